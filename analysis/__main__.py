@@ -4,7 +4,6 @@ verify RUNS..., study [NAME RUNS...], outcome --velocity V ...."""
 import argparse
 import os
 import sys
-from importlib import import_module
 
 from .libraries import require_libraries
 from .signals import ENDING, end_quietly
@@ -13,7 +12,7 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import in_one_line  # noqa: E402
+from .commands import in_one_line, numbers, pictures, state, study  # noqa: E402
 from .printable import printable  # noqa: E402
 
 
@@ -40,8 +39,8 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for name in "summary plot figures view film export status verify study outcome".split():
-        import_module(f"analysis.commands.{name}").add_parser(commands)
+    for module in (numbers, pictures, state, study):
+        module.add_parsers(commands)
     return parser
 
 

@@ -6,12 +6,10 @@ from .measures.compression import compression_length, maximum_compression, mutua
 from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses
 from .measures.fragments import fragment_sizes, fragments, growth_efficiency
 from .measures.ledger import closure, fractions_at, total_energy
-from .measures.probability import exact_interval
 from .measures.structure import correlation_dimension, filling_factor, grains_within, gyration_radius
 from .measures.structure import inner_coordination, mean_coordination
-from .report.plot import plot
-from .report.rows import table
-from .report.summary import summarise
+from .report.plot import exact_interval, plot
+from .report.rows import summarise, table
 from .runs.files import RunFolderError
 from .runs.folder import RunFolder, State, open_run
 

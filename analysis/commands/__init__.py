@@ -1,4 +1,5 @@
-"""The commands of python3 -m analysis, one a module: add_parser(commands) and what they run."""
+"""The commands of python3 -m analysis: each module adds its own to the parser, and loads what they need when they
+run."""
 
 import argparse
 import sys
@@ -7,6 +8,7 @@ from pathlib import Path
 from ..printable import printable
 
 FAILED = 2
+RUNS = "run folder, folder that holds run folders, or a pattern such as 'runs/**'"
 
 
 def complain(message):
@@ -30,8 +32,8 @@ def number(is_right, must_be):
 
 
 def in_one_line(options):
-    """Exit status of a command; what it is refused with, by the file system or by us, gets one line. Where an error of the file system
-    names no file, as a full disk's, it is of what the command writes."""
+    """Exit status of a command. Refusals, of the file system or by this package, get one line; an error of the file
+    system that names no file, as a full disk's, is of what the command writes."""
     try:
         return options.command(options)
     except BrokenPipeError:  # main()'s
@@ -47,7 +49,8 @@ def in_one_line(options):
 
 
 def write_of_run(options, name, write):
-    """Exit status of a command that writes one file of options.run: write(RunFolder, Path), to options.out or to `name` in its folder."""
+    """Exit status of a command that writes one file of options.run: write(RunFolder, Path), to options.out or to
+    `name` in its folder."""
     from ..runs.folder import open_run
 
     folder = open_run(options.run)

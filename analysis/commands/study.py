@@ -14,7 +14,7 @@ BEFORE = ("atlas", "compressed", "compression", "elastoplastic", "sintered")  # 
 FORMATS = ("text", "markdown", "json", "csv")
 
 
-def add_parser(commands):
+def add_parsers(commands):
     """Add the command to argparse's subparsers."""
     parser = commands.add_parser(
         "study",

@@ -1,206 +1,167 @@
 """A column of a table of runs against another, with error bars over pairs of aggregates."""
 
 import textwrap
-from collections.abc import Mapping
-from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 import pandas
+from matplotlib import colormaps
+from matplotlib.transforms import offset_copy
+from scipy.stats import binomtest
 
-from ..arguments import Kind, one_of, takes, wrong
+from ..figures.panels import legend, letter, panels
+from ..figures.style import styled
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
-from ..runs.format import CHANNELS, COMPRESSION
-from ..runs.named import unknown
+from ..printable import suggested
+from ..runs.format import CHANNELS, COLOURS, COMPRESSION
 from ..runs.table import FOLDER
-from ..studies.curve_figure import CurveFigure
-from ..studies.definition import Quantity, Results
-from ..studies.estimate import Fraction
-from ..studies.runs import Runs, SeveralRuns, each
 from .rows import at_end, differing, parameters, table, varied
 
-WHATS = "sticking", "largest", "energy"
-SEED, CHANNEL, LARGEST, KIND = "seed", "channel", "largest_fraction", "kind"
+LARGEST = "largest_fraction"
+WHATS = {"sticking": ["outcome"], "largest": [LARGEST], "energy": [at_end(channel) for channel in CHANNELS]}
 FILES = "file", "projectileFile"  # with the seed, what tells pairs of aggregates apart
-OF_MAXIMUM = "d_max", "t_max"
-APART = 5.0  # points between curves
+CURVES = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
+MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
+APART, MOST_APART = 5.0, 20.0  # points between two curves, and between the first and the last
 LETTERS = 13  # of a title, an inch of the figure
 
 
 class CannotPlot(ValueError):
-    """What is asked for cannot be drawn from these runs; the message is one line."""
+    """These runs cannot be drawn so; the message is one line."""
 
 
-@dataclass(frozen=True)
-class OfDecided:
-    """How many of the decided runs of a Fraction ended so; the interval (95 %, exact) counts the undecided ones either way."""
+def exact_interval(successes, trials, confidence=0.95):
+    """Exact interval of a probability from independent trials (Clopper & Pearson 1934).
 
-    fraction: Fraction
-    error = None
+    Parameters
+    ----------
+    successes, trials : int
+    confidence : float
 
-    @property
-    def pairs(self):
-        return self.fraction.pairs - self.fraction.undecided
+    Returns
+    -------
+    low, high : float
 
-    @property
-    def value(self):
-        return self.fraction.successes / self.pairs if self.pairs else np.nan
-
-    def interval(self):
-        return self.fraction.interval()
-
-
-NAME = Kind("the name of a column", lambda name: isinstance(name, str) and name != "")
+    Examples
+    --------
+    >>> [round(bound, 4) for bound in exact_interval(5, 10)], exact_interval(0, 10)[0], exact_interval(10, 10)[1]
+    ([0.1871, 0.8129], 0.0, 1.0)
+    """
+    interval = binomtest(int(successes), int(trials)).proportion_ci(confidence, method="exact")
+    return float(interval.low), float(interval.high)
 
 
-@takes(
-    what=Kind(f"{', '.join(WHATS)}, or {NAME.must}", NAME.is_right),
-    x=NAME,
-    by=Kind(f"{NAME.must}, or ''", lambda name: name is None or isinstance(name, str)),
-    where=Kind("{column: value}", lambda where: isinstance(where, Mapping)),
-    logarithmic=one_of("x", "y", "xy", ""),
-)
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
-    """matplotlib Figure of runs (a table(), or what that takes).
+    """Figure of many runs: a quantity against one of their columns, with error bars over pairs of aggregates.
 
-    what: "sticking" (fraction of the runs that stick, with exact 95 % intervals; of the decided ones: those that are undecided, or
-    have not ended, widen the interval, counted either way, and are named above, as are those that never met, which are left out),
-    "largest" (mass fraction of the largest piece), "energy" (change of every channel from the start to the end, over K(0), or of compressions the boundaries' work; kinetic: what is left), or any
-    column. x: a column of numbers; by: a column that tells curves (panels, of "energy") apart; where: {column: value} of the runs
-    that are drawn; logarithmic: axes, 'x', 'y', 'xy' or '' (None: x where it spans a decade). Bars but of "sticking" are standard
-    errors of the mean over pairs of aggregates, which are told by their seed and their files; open points are single pairs. Runs of a
-    kind that has no x, or nothing of what is drawn, are left out and counted above.
+    Pairs are told apart by their seed and files. Bars are standard errors of the mean over pairs; open points are
+    single pairs. Of "sticking" they are exact 95 % intervals that count undecided runs, and those that have not
+    ended, either way; points are fractions of the decided runs, and runs that never met are left out. Runs of a kind
+    without x or without a value are left out and counted in the title.
 
-    CannotPlot (ValueError) where runs differ in parameters beside x, by, the seed and the files; UnknownName (KeyError) for a wrong
-    column.
+    Parameters
+    ----------
+    what : str
+        "sticking" (fraction of the runs that stick), "largest" (mass fraction of the largest piece), "energy" (change
+        of every channel over K(0), of compressions over the boundaries' work; kinetic: what is left), or a column.
+    runs : pandas.DataFrame, path, pattern, RunFolder or list of these
+        A table(), or what that takes.
+    x : str
+        Column of numbers.
+    by : str
+        Column that tells curves (of "energy" panels) apart.
+    where : dict, optional
+        {column: value} of the runs that are drawn.
+    logarithmic : str, optional
+        Axes: "x", "y", "xy" or "". By default x if it spans a decade.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    CannotPlot
+        A ValueError, also if runs differ in parameters beside x, by, the seed and the files.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
-    if not found.index.is_unique:  # of tables put together
-        found, found.attrs = found.reset_index(drop=True), found.attrs
-    if by == x:
-        raise CannotPlot(f"by = {by}: must be another column than x")
-    _require_columns(found, what, [x, *([by] if by else []), *(where or {})])
-    files = [name for name in FILES if name in found and found[name].notna().any()]
-    drawn = Runs(found, SEED if SEED in found else FOLDER, files)
+    units, attributes = found.attrs.get("units", {}), found.attrs
+    found = found.reset_index(drop=True)  # of tables put together
+    found.attrs = attributes
+    seed = "seed" if "seed" in found else FOLDER
+    _require_columns(found, what, x, by, where or {}, seed)
     for name, value in (where or {}).items():
-        drawn = _only(drawn, name, value)
-    asked, of_kinds = drawn.table, _of_kinds(drawn.table, [x, *_columns(what)])
-    without = _without(of_kinds, what, x, by)
-    drawn = drawn.of(of_kinds[~without.to_numpy().any(axis=1)])
-    if not len(drawn.table):
-        raise CannotPlot(f"no run has all of {', '.join(dict.fromkeys(name for name in (what, x, by) if name))}")
-    _require_drawable(drawn.table, x, by)
-    quantity = _quantity(what, drawn, [x, by] if by else [x])
-    if not len(quantity.values):
-        raise CannotPlot(f"{what}: no run has a value")
-    figure = _curves(what, drawn.table, x, by, logarithmic).draw(Results(drawn.table, {quantity.name: quantity}))
-    for axes in figure.axes:
-        if axes.get_xlabel() == x:
-            axes.set_xlabel(_with_unit(found, x))
-    lines = textwrap.wrap(_about(drawn.table, what, asked, without), int(LETTERS * figure.get_figwidth()))
-    figure.suptitle("\n".join(lines), fontsize=10)
+        found = _only(found, name, value)
+    wanted = found
+    found = _of_kinds(found, [x, *WHATS.get(what, [what])])
+    lacking = _lacking(found, what, x, by)
+    found = found[~lacking.to_numpy().any(axis=1)]
+    _require_drawable(found, what, x, by, seed)
+    title = _title(found, what, wanted, lacking)
+    files = [name for name in FILES if name in found and found[name].notna().any()]
+    found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
+    for name in filter(None, (x, by)):
+        found[name] = found[name].map(_rounded)
+    figure = _draw(found, what, x, by, _logarithmic(found, x, logarithmic), units)
+    figure.suptitle("\n".join(textwrap.wrap(title, int(LETTERS * figure.get_figwidth()))), fontsize=10)
     return figure
 
 
-def _columns(what):
-    """Columns of what is drawn."""
-    return {"sticking": ["outcome"], "largest": [LARGEST], "energy": list(map(at_end, CHANNELS))}.get(what, [what])
+def _require_columns(found, what, x, by, where, seed):
+    if by == x:
+        raise CannotPlot(f"by = {by}: must be another column than x")
+    for name in (what, x, *([by] if by else []), *where):
+        if name not in found and not (name == what and what in WHATS):
+            names = (*WHATS, *found) if name == what else found
+            raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
+    own = [seed, "outcome", "ended", "kind"] + ["maximum_inside"] * bool({"d_max", "t_max"} & {what, x, by})
+    missing = [name for name in dict.fromkeys((*WHATS.get(what, ()), *own)) if name not in found]
+    if missing:
+        raise CannotPlot(f"table of runs: lacks {', '.join(missing)}; must be as analysis.table() gives it")
+
+
+def _only(found, name, value):
+    """The runs with a value in a column."""
+    column = found[name]
+    if column.dtype.kind in "fiu":
+        if isinstance(value, str):
+            raise CannotPlot(f"where {name} = {value}: must be a number")
+        same = column.map(_rounded) == _rounded(float(value))
+    else:
+        same = column == value
+    if not same.any():
+        raise CannotPlot(
+            f"where {name} = {value}: no run is left; must be one of {', '.join(map(str, column.unique()))}"
+        )
+    return found[same]
 
 
 def _of_kinds(found, columns):
-    """The runs of the kinds that have values in all columns; all of them where no kind has."""
-    having = found[columns].notna().groupby(found[KIND]).any().all(axis=1)
-    kept = found[found[KIND].map(having)]
+    """The runs of the kinds that have values in all columns; all of them if no kind has."""
+    having = found[columns].notna().groupby(found["kind"]).any().all(axis=1)
+    kept = found[found["kind"].map(having)]
     return kept if len(kept) else found
 
 
-def _without(found, what, x, by):
-    """{what is said of them: whether runs (n,) can't be drawn} as a DataFrame: without a value, and where d_max is but a bound."""
-    shown = () if what in ("sticking", "energy") else _columns(what)
-    of = {f"without {name}": found[name].isna() for name in dict.fromkeys((x, by, *shown)) if name}
-    for name in {what, x, by}.intersection(OF_MAXIMUM):
-        of[f"whose {name} is only a bound"] = found.maximum_inside.eq(False)
-    return pandas.DataFrame(of, found.index)
+def _lacking(found, what, x, by):
+    """{why: whether runs (n,) can't be drawn} as a DataFrame: without a value, or d_max is but a bound."""
+    shown = () if what in ("sticking", "energy") else WHATS.get(what, [what])
+    why = {f"without {name}": found[name].isna() for name in dict.fromkeys((x, by, *shown)) if name}
+    for name in {"d_max", "t_max"} & {what, x, by}:
+        why[f"whose {name} is only a bound"] = found.maximum_inside.eq(False)
+    return pandas.DataFrame(why, found.index)
 
 
-def _quantity(what, drawn, by):
-    """Quantity of what is drawn."""
-    if what == "sticking":
-        collisions = drawn.of(drawn.table[drawn.table.outcome.notna() & ~_never_met(drawn.table)])
-        try:
-            values = collisions.fractions(lambda table: table.outcome == STICKING, by, _undecided)
-        except SeveralRuns as error:
-            raise CannotPlot(str(error)) from None
-        return Quantity(what, "", each(values, lambda fraction, *_: OfDecided(fraction)))
-    if what == "energy":
-        changing = {c: at_end(c) for c in CHANNELS if c == "kinetic" or drawn.table[at_end(c)].any()}
-        return Quantity(what, "", drawn.parts(changing, by, CHANNEL), "%", 0.01)
-    column = LARGEST if what == "largest" else what
-    _require_numbers(drawn.table, column)
-    return Quantity(what, "", drawn.estimates(column, by))
-
-
-def _curves(what, found, x, by, logarithmic):
-    """CurveFigure of what is drawn."""
-    if logarithmic is None:
-        low, high = found[x].min(), found[x].max()
-        logarithmic = "x" if low > 0 and high >= 10 * low else ""
-    of_work = (found[KIND] == COMPRESSION.name).all()
-    labels = {
-        "sticking": "runs that stick, of the decided ones",
-        "largest": "mass of the largest piece, of all",
-        "energy": "change, of the boundaries' work  [%]" if of_work else "change (kinetic: end), of K(0)  [%]",
-    }
-    return CurveFigure(
-        *(what, "", what, x),
-        colour=CHANNEL if what == "energy" else by,
-        panel=by if what == "energy" else "",
-        logarithmic=logarithmic,
-        y_label=labels.get(what) or _with_unit(found, what),
-        limits=(-0.03, 1.03) if what in ("sticking", "largest") else None,
-        line="-" if x in parameters(found) else "",
-        apart=0.0 if what == "energy" else APART,
-    )
-
-
-def _require_columns(found, what, named):
-    """Raise UnknownName for a name that is no column of a table, CannotPlot where it is none of table()."""
-    if what not in (*WHATS, *found.columns):
-        raise unknown("table of runs", what, (*WHATS, *found.columns))
-    own = [SEED if SEED in found else FOLDER, "outcome", "ended", KIND]
-    own += ["maximum_inside"] if {what, *named}.intersection(OF_MAXIMUM) else []
-    for name in named:
-        if name not in found:
-            raise unknown("table of runs", name, found.columns)
-    lacking = [name for name in dict.fromkeys((*_columns(what), *own)) if name not in found]
-    if lacking:
-        raise CannotPlot(f"table of runs: lacks {', '.join(lacking)}; must be as analysis.table() gives it")
-
-
-def _only(drawn, name, value):
-    """The Runs with a value in a column."""
-    of_numbers = drawn.table[name].dtype.kind in "fiu"
-    if of_numbers and not isinstance(value, Real) or not (of_numbers or np.isscalar(value)):
-        raise wrong(f"where {name}", value, "a number" if of_numbers else "one value")
-    left = drawn.where(**{name: value})
-    if not len(left.table):
-        there = ", ".join(map(str, drawn.table[name].unique()))
-        raise CannotPlot(f"where {name} = {value}: no run is left; must be one of {there}")
-    return left
-
-
-def _require_drawable(found, x, by):
-    _require_numbers(found, x)
-    if found[KIND].nunique() > 1:
-        raise CannotPlot(f"the runs are of the kinds {', '.join(found[KIND].unique())}: choose where {KIND}")
-    others = [name for name in varied(found) if name not in (x, by, SEED, *FILES)]
+def _require_drawable(found, what, x, by, seed):
+    if not len(found):
+        raise CannotPlot(f"no run has all of {', '.join(dict.fromkeys(filter(None, (what, x, by))))}")
+    for name in [x, *([] if what in ("sticking", "energy") else WHATS.get(what, [what]))]:
+        if found[name].dtype.kind not in "fiub":
+            raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+    if found["kind"].nunique() > 1:
+        raise CannotPlot(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
+    others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
     if others and x in parameters(found):
         raise CannotPlot(differing(found, others, "choose by or where"))
-
-
-def _require_numbers(found, name):
-    if found[name].dtype.kind not in "fiub":
-        raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
 
 
 def _undecided(found):
@@ -208,23 +169,149 @@ def _undecided(found):
     return found.outcome.map(lambda text: str(text).startswith(UNDECIDED)) | ~found.ended.astype(bool)
 
 
-def _never_met(found):
-    return found.outcome == NEVER_MET
-
-
-def _with_unit(found, name):
-    unit = found.attrs.get("units", {}).get(name, "")
-    return name + (f"  [{unit}]" if unit not in ("", "1") else "")
-
-
-def _about(found, what, asked, without):
-    """How many runs there are, and how many of them never met, have no outcome that counts, or are left out of those asked for: of
-    other kinds, and by _without()."""
-    missed, sticking = _never_met(found), what == "sticking"
+def _title(found, what, wanted, lacking):
+    """How many runs there are, and how many never met, have no outcome that counts, or are left out."""
+    missed, sticking = found.outcome == NEVER_MET, what == "sticking"
     undecided = int((_undecided(found) & ~(missed & sticking)).sum())
-    others = asked[KIND][~asked.index.isin(without.index)].value_counts()
+    others = wanted["kind"][~wanted.index.isin(lacking.index)].value_counts()
     text = f"{len(found)} runs" + "".join(f", {number} of the kind {kind} left out" for kind, number in others.items())
-    text += "".join(f", {own.sum()} {name} left out" for name, own in without.items() if own.any())
+    text += "".join(f", {own.sum()} {name} left out" for name, own in lacking.items() if own.any())
     text += f", {missed.sum()} {'that never met left out' if sticking else 'of them never met'}" if missed.any() else ""
     text += f", {undecided} of them undecided or not ended" if undecided else ""
     return text + (" (in the bars, counted either way)" if undecided and sticking else "")
+
+
+def _rounded(value):
+    """Numbers that differ by rounding alone are one value of x."""
+    return float(f"{value:.9g}") if isinstance(value, float) else value
+
+
+def _logarithmic(found, x, wanted):
+    if wanted in ("x", "y", "xy", ""):
+        return wanted
+    if wanted is not None:
+        raise CannotPlot(f"logarithmic = {wanted}: must be x, y, xy or ''")
+    low, high = found[x].min(), found[x].max()
+    return "x" if low > 0 and high >= 10 * low else ""
+
+
+def _sticking(found, x):
+    """DataFrame by x of the fractions of the decided runs that stick, with exact intervals."""
+    found = found[found.outcome.notna() & (found.outcome != NEVER_MET)]
+    rows = {}
+    for value, own in found.groupby(x):
+        twice = own.pair.duplicated(keep=False)
+        if twice.any():
+            raise CannotPlot(f"{x} = {value}: a pair of aggregates has {twice.sum()} runs; must have one")
+        undecided = _undecided(own)
+        sticks, decided = int((own.outcome.eq(STICKING) & ~undecided).sum()), int((~undecided).sum())
+        fraction = sticks / decided if decided else np.nan
+        low, high = exact_interval(sticks, len(own))[0], exact_interval(sticks + undecided.sum(), len(own))[1]
+        rows[value] = fraction, fraction - low, high - fraction, decided
+    return _points(rows.values(), rows)
+
+
+def _means(found, column, x, unit=1.0):
+    """DataFrame by x of the means over pairs of a column, in a unit, with standard errors."""
+    pairs = found.dropna(subset=[column]).groupby([x, "pair"])[column].mean().groupby(level=x)
+    error = pairs.std() / np.sqrt(pairs.size()) / unit  # NaN for one pair
+    return _points(zip(pairs.mean() / unit, error, error, pairs.size()), pairs.groups)
+
+
+def _points(rows, x):
+    return pandas.DataFrame(list(rows), list(x), ["value", "below", "above", "pairs"]).sort_index()
+
+
+@styled
+def _draw(found, what, x, by, logarithmic, units):
+    """The Figure: one panel, or of energies one for each value of `by`."""
+    parts = [("", found)]
+    if what == "energy" and by:
+        parts = [(f"{by} {_short(value)}, ", found[found[by] == value]) for value in sorted(found[by].unique())]
+    columns = min(3, len(parts))
+    figure, axes = panels(-(-len(parts) // columns), columns, 4.4, 3.8)
+    places = axes.ravel()[: len(parts)]
+    for place, (title, own) in zip(places, parts):
+        curves = _energies(own, x) if what == "energy" else _curves(own, what, x, by)
+        if not any(len(points) for *_, points in curves):
+            raise CannotPlot(f"{what}: no run has a value")
+        _draw_curves(place, curves, x in parameters(found), apart=what != "energy")
+        if what == "energy" or not by:
+            place.set_title(title + _pairs_text([n for *_, points in curves for n in points.pairs]), fontsize=10)
+        for name in logarithmic:
+            getattr(place, f"set_{name}scale")("log")
+        place.set_xlabel(_with_unit(units, x))
+        place.set_ylabel(_y_label(found, what, units))
+        legend(place, fontsize=8)
+    low, high = zip(*(place.get_ylim() for place in places))
+    for place in places:
+        place.set_ylim((-0.03, 1.03) if what in ("sticking", "largest") else (min(low), max(high)))
+    for place in axes.ravel()[len(parts) :]:
+        place.set_axis_off()
+    letter(places, "")
+    return figure
+
+
+def _energies(found, x):
+    """[(channel, colour, points in %)] of the channels that change."""
+    changing = [channel for channel in CHANNELS if channel == "kinetic" or found[at_end(channel)].any()]
+    return [(channel, COLOURS[channel], _means(found, at_end(channel), x, 0.01)) for channel in changing]
+
+
+def _curves(found, what, x, by):
+    """[(label, colour, points)] for each value of `by`, or of all runs."""
+    measure = lambda own: _sticking(own, x) if what == "sticking" else _means(own, *WHATS.get(what, [what]), x)
+    if not by:
+        return [(None, CURVES[-1], measure(found))]
+    values = sorted(found[by].unique())
+    colours = CURVES if len(values) <= len(CURVES) else colormaps["plasma"](np.linspace(0.0, 0.85, len(values)))
+    curves = [(value, colour, measure(found[found[by] == value])) for value, colour in zip(values, colours)]
+    return [(f"{by} {_short(value)}, {_pairs_text(own.pairs)}", colour, own) for value, colour, own in curves]
+
+
+def _draw_curves(axes, curves, joined, apart):
+    """Curves, apart: beside each other and with different dashes, so that none hides an equal one."""
+    for k, (label, colour, points) in enumerate(curves):
+        aside = min(APART, MOST_APART / len(curves)) * (k - (len(curves) - 1) / 2) if apart else 0.0
+        dashes = LINES[k % len(LINES)] if apart else "-"
+        _draw_curve(axes, points, colour, label, MARKERS[k % len(MARKERS)], dashes if joined else "none", aside)
+
+
+def _draw_curve(axes, points, colour, label, marker, line, aside):
+    """Points with bars, open where the error is not known, moved by `aside` [points] so that none hides an equal
+    one."""
+    at, value = points.index.to_numpy(dtype=float), points.value.to_numpy()
+    bars = points[["below", "above"]].to_numpy().T
+    known = np.isfinite(bars).all(axis=0)
+    bars = np.where(known, bars, 0.0)
+    moved = {"transform": offset_copy(axes.transData, axes.figure, aside, units="points"), "color": colour}
+    # Limits as if not moved: matplotlib 3.10.9 leaves out what is.
+    for ends in (value - bars[0], value + bars[1]):
+        axes.update_datalim(np.column_stack([at, ends])[np.isfinite(value)])
+    axes.plot(at, value, linestyle=line, lw=1.2, **moved)
+    axes.errorbar(at, value, bars, fmt=marker, capsize=3, markersize=5, mfc="white", label=label, **moved)
+    axes.plot(at[known], value[known], marker, markersize=5, zorder=3, **moved)
+
+
+def _pairs_text(numbers):
+    """'4 pairs' or '2 to 4 pairs'."""
+    fewest, most = min(numbers, default=0), max(numbers, default=0)
+    return (f"{fewest:g} to " if fewest != most else "") + f"{most:g} pair{'s' * (most != 1)}"
+
+
+def _short(value):
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _with_unit(units, name):
+    unit = units.get(name, "")
+    return name + (f"  [{unit}]" if unit not in ("", "1") else "")
+
+
+def _y_label(found, what, units):
+    of_work = (found["kind"] == COMPRESSION.name).all()
+    return {
+        "sticking": "runs that stick, of the decided ones",
+        "largest": "mass of the largest piece, of all",
+        "energy": "change, of the boundaries' work  [%]" if of_work else "change (kinetic: end), of K(0)  [%]",
+    }.get(what) or _with_unit(units, what)

@@ -16,7 +16,7 @@ import pandas
 from scipy.stats import binomtest, fisher_exact
 from scipy.stats import t as student
 
-from ..measures.probability import exact_interval
+from ..report.plot import exact_interval
 
 CONFIDENCE = 0.95
 DRAWS = 1000

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import analysis
-from analysis.report.rows import LARGEST, MEASURED, frame, row, short_text, table
+from analysis.report.rows import MEASURED, frame, row, table
+from analysis.report.text import short_text
 from analysis.runs.files import RunFolderError
 from analysis.runs.format import CHANNELS
 
@@ -67,8 +68,8 @@ def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
     assert found.filter(like="_at_end").sum(axis=1).tolist() == pytest.approx([1.0, 1.0], abs=0.02)
     assert {column.name for column in MEASURED[:20]} <= set(found) and found.attrs["units"]["velocity"] == "m/s"
     piece = run.last.fragments().iloc[0]
-    for column in LARGEST:
-        assert np.array_equal(found[column.name][0], piece[column.name.removeprefix("largest_")], equal_nan=True)
+    for name in ("filling_factor", "gyration_radius", "fractal_dimension", "coordination"):
+        assert np.array_equal(found[f"largest_{name}"][0], piece[name], equal_nan=True)
     assert table([run, run, str(tmp_path), f"{tmp_path}/r*"]).run.tolist() == ["run", "r1"]  # each folder once
 
 

@@ -12,7 +12,7 @@ from written_runs import change_arrays, flip, state_arrays, unseal
 
 from analysis import summarise
 from analysis.figures.draw import figures_of
-from analysis.report.summary import table
+from analysis.report.text import long_text
 from analysis.runs.files import RunFolderError
 from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS, COLLISION
@@ -88,7 +88,7 @@ def test_a_kind_of_run_of_a_script_of_its_own(folder):
     assert list(run.start.aggregate) == [0, 5] and list(figures_of(run)) == ["energy"]
     numbers = summarise(run)
     assert numbers["energy_closure"] < 1e-9 and numbers["outcome"] is None and numbers["d_max"] is None
-    text = table(run, numbers)
+    text = long_text(run, numbers)
     assert "a run of the kind shrink" in text and "energy closure" in text and "d_max" not in text
     change_arrays(folder / "history.npz", filling=np.zeros(7))
     with pytest.raises(RunFolderError, match="'filling' has the shape"):

@@ -1,0 +1,180 @@
+"""python3 -m analysis plot, figures, view, film, export: pictures of runs, and their states for other programs."""
+
+import argparse
+from pathlib import Path
+
+from ..figures.grain_colours import COLOURINGS
+from ..printable import printable
+from . import FAILED, RUNS, complain, number, write_of_run
+
+TRUTHS = {"True": True, "False": False}
+FORMATS = "vtk", "xyz"
+
+
+def add_parsers(commands):
+    """Add the commands to argparse's subparsers."""
+    _add_plot(commands)
+    figures = _of_one_run(
+        *(commands, "figures", "draw a run's figures", "FOLDER", "RUN/figures, made if it is missing"),
+        "Write motion.png (d and v against time, of equal aggregates), energy.png (the channels), grains.png (the "
+        "grains, dense aggregates cut through the middle) and forces.png (contact forces); of a compression "
+        "compression.png alone.",
+    )
+    figures.set_defaults(command=draw_figures)
+    view = _of_one_run(
+        *(commands, "view", "write a page on which the aggregates can be turned", "FILE", "RUN/view.html"),
+        "Write the saved states as one HTML file for a browser: turn, zoom, go through the states, colour by "
+        "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js "
+        "(Debian: libjs-three).",
+    )
+    view.add_argument("--three", metavar="FOLDER", help="three.js, r110 to r147 (default: Debian's)")
+    view.set_defaults(command=write_view)
+    film = _of_one_run(
+        *(commands, "film", "write a film of a run's states", "FILE", "RUN/film.mp4; .gif: repeats"),
+        "Write a film with a frame for each saved state. Needs ffmpeg.",
+    )
+    rate = number(lambda rate: 0.1 <= rate <= 120, "from 0.1 to 120")
+    film.add_argument("--rate", metavar="FRAMES", type=rate, default=10.0, help="states a second (default: 10)")
+    film.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is seen (default: z)")
+    film.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
+    width = number(lambda width: 160 <= width <= 3840 and width == int(width), "a whole number from 160 to 3840")
+    film.add_argument("--width", metavar="PIXELS", type=width, default=960, help="from 160 to 3840 (default: 960)")
+    film.set_defaults(command=write_film)
+    _add_export(commands)
+
+
+def _of_one_run(commands, name, about, place, default, description):
+    """The parser of a command that writes something of one run."""
+    parser = commands.add_parser(name, help=about, description=description)
+    parser.add_argument("run", metavar="RUN", help="run folder")
+    parser.add_argument("--out", metavar=place, help=f"where to (default: {default})")
+    return parser
+
+
+def draw_figures(options):
+    """Exit status: 0, or 2 when the run could not be read or the figures not be written."""
+    from ..figures.draw import draw_all
+    from ..progress import line_beside_bars
+    from ..runs.folder import open_run
+
+    folder = open_run(options.run)
+    for file in draw_all(folder, options.out or folder.path / "figures"):
+        line_beside_bars(file)
+    return 0
+
+
+def write_view(options):
+    """Exit status: 0, or 2 when the run could not be read or the page not be written."""
+    from ..export.viewer import THREE, write_view
+
+    if options.out and not options.out.endswith((".html", ".htm")):
+        complain(f"{options.out}: must end in .html")
+        return FAILED
+    return write_of_run(options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE))
+
+
+def write_film(options):
+    """Exit status: 0, or 2 when the run could not be read or the film not be written."""
+    from ..export.film import write_film
+
+    how = options.rate, int(options.width), options.along, options.colour
+    return write_of_run(options, "film.mp4", lambda folder, file: write_film(folder, file, *how))
+
+
+def _add_plot(commands):
+    parser = commands.add_parser(
+        "plot",
+        help="draw a quantity of many runs against one of their parameters",
+        description="Draw sticking (fraction of the decided runs that stick, with exact 95 % intervals, which count "
+        "undecided runs either way; those that never met are left out), largest (mass of the largest piece), energy "
+        "(where it went, by channel), or any column of analysis.table against another, with standard errors over the "
+        "pairs of aggregates; write a PNG and print its path.",
+    )
+    parser.add_argument("what", metavar="WHAT", help="sticking, largest, energy, or a column")
+    parser.add_argument("runs", nargs="+", metavar="RUNS", help=RUNS)
+    parser.add_argument("--x", metavar="COLUMN", default="velocity", help="on the axis (default: velocity)")
+    parser.add_argument("--by", metavar="COLUMN", default="", help="tells curves apart; panels of energy")
+    parser.add_argument(
+        "--where", metavar="COLUMN=VALUE", type=_condition, action="append", default=[], help="draw these runs only"
+    )
+    parser.add_argument("--log", choices=("x", "y", "xy", "none"), help="logarithmic axes (default: x over a decade)")
+    parser.add_argument("--out", metavar="FILE", help="the PNG (default: WHAT-COLUMN.png)")
+    parser.set_defaults(command=draw_plot)
+
+
+def _condition(text):
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text}: must be COLUMN=VALUE")
+    if value in TRUTHS:
+        return name, TRUTHS[value]
+    try:
+        return name, float(value)
+    except ValueError:
+        return name, value
+
+
+def draw_plot(options):
+    """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
+    from ..report.plot import plot
+    from ..report.rows import frame, measure, row
+    from ..runs.files import replacing
+
+    file = Path(options.out or f"{options.what}-{options.x}.png")
+    if file.suffix != ".png":
+        complain(f"{file}: must end in .png")
+        return FAILED
+    where = dict(options.where)
+    if len(where) < len(options.where):
+        complain("--where: must be given once for a column")
+        return FAILED
+    logarithmic = "" if options.log == "none" else options.log
+    structure = any("largest_" in name for name in (options.what, options.x, options.by, *where))
+    measured, problems = measure(options.runs, lambda run: row(run, structure))
+    for problem in problems:
+        complain(problem)
+    if not measured:
+        return FAILED
+    figure = plot(options.what, frame(measured), options.x, options.by, where, logarithmic)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(file) as out:
+        figure.savefig(out, format="png", dpi=150)
+    print(printable(file))
+    return FAILED if problems else 0
+
+
+def _add_export(commands):
+    from ..export.fields import CONTACTS, GRAINS
+
+    about = "Write the states of a run as VTK files (run.pvd: open it in ParaView or OVITO) or as extended XYZ\n"
+    about += "(run.xyz: OVITO, ASE), in SI units.\n"
+    for title, fields in (("grains (v is called velo in run.xyz)", GRAINS), ("contacts (VTK only)", CONTACTS)):
+        about += f"\n{title}:" + "".join(
+            f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields
+        )
+    parser = _of_one_run(
+        *(commands, "export", "write a run's states for ParaView, OVITO and others", "FOLDER"),
+        *("RUN/export, made if it is missing", about),
+    )
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.add_argument(
+        "--format",
+        choices=(*FORMATS, "all"),
+        default="vtk",
+        help="vtk (grains and contacts), xyz (grains in one file of text) or all; default: vtk",
+    )
+    parser.set_defaults(command=write_export)
+
+
+def write_export(options):
+    """Exit status: 0, or 2 when the run could not be read or the files not be written."""
+    from ..export.extended_xyz import write_xyz
+    from ..export.vtk_series import write_vtk
+    from ..runs.folder import open_run
+
+    writers = dict(zip(FORMATS, (write_vtk, write_xyz)))
+    folder = open_run(options.run)
+    out = Path(options.out) if options.out else folder.path / "export"
+    for name in FORMATS if options.format == "all" else (options.format,):
+        print(printable(writers[name](folder, out)), flush=True)
+    return 0

@@ -1,0 +1,95 @@
+"""python3 -m analysis status, verify: what has become of runs, and whether they are as they were written."""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+from ..printable import printable
+from . import FAILED, RUNS, complain
+
+OF_STUDIES = "runs.csv", "comparison.json"
+
+
+def add_parsers(commands):
+    """Add the commands to argparse's subparsers."""
+    parser = commands.add_parser(
+        "status",
+        help="what is done, running, waiting and failed, and the time left",
+        description="Print what has become of each run, also of runs of other machines on a shared disk, with their "
+        "host. Times left are by each run's own pace. Rows of a table that have not begun have no folder: "
+        "yade_scripts/study.py TABLE --status counts them too.",
+    )
+    parser.add_argument("runs", nargs="+", metavar="RUNS", help=RUNS)
+    parser.add_argument("--json", action="store_true", help="print JSON: a list with an object a run, times in s")
+    parser.set_defaults(command=status)
+    parser = commands.add_parser(
+        "verify",
+        help="compare runs that have ended, and tables of runs, with their sums",
+        description="Read all files of each run and compare them with the SHA-256 that the run left of them; print "
+        "what differs. `sha256sum -c ended` in a run folder does the same. Runs of versions before 0.5.0 have no sums.",
+    )
+    parser.add_argument("runs", nargs="+", metavar="RUNS", help=f"{RUNS}, a study's runs.csv, or a table of outcomes")
+    parser.set_defaults(command=verify)
+
+
+def status(options):
+    """Exit status: 0, or 2 when a path holds no run or a run has failed."""
+    from ..report.status import line
+    from ..runs.collect import run_folders
+    from ..runs.status import FAILED as HAS_FAILED
+    from ..runs.status import state
+
+    found = run_folders(options.runs)
+    states = {str(path): state(path) for path, problem in found if not problem}
+    problems = [problem for _, problem in found if problem]
+    if options.json:
+        print(json.dumps([{"run": name, **asdict(of_run)} for name, of_run in states.items()], indent=1))
+    elif states:
+        width = max(len(printable(name)) for name in states)
+        for name, of_run in states.items():
+            print(line(printable(name).ljust(width), of_run, of_run.left))
+        print(_total(states.values()))
+    for problem in problems:
+        complain(problem)
+    return FAILED if problems or any(of_run.kind == HAS_FAILED for of_run in states.values()) else 0
+
+
+def _total(states):
+    """The line below: how many of each, and the time left."""
+    from ..report.status import counts, duration_text
+    from ..runs.status import RUNNING, WAITING
+
+    text = f"{len(states)} runs: {counts(states)}"
+    for kind, sum_up, what in (
+        (RUNNING, max, "left until the last running one ends"),
+        (WAITING, sum, "for the waiting ones, one after another"),
+    ):
+        left = [s.left for s in states if s.kind == kind]
+        if left:
+            text += "; " + ("unknown time" if None in left else duration_text(sum_up(left))) + f" {what}"
+    return text
+
+
+def verify(options):
+    """Exit status: 0, or 2 when something differs from its sum, a run has lost its sums, or no path holds a run."""
+    from ..progress import line_beside_bars, progress
+    from ..runs.collect import LOST, is_lost, run_folders
+    from ..runs.files import begins_with_sum
+    from ..runs.verify import verify_run, verify_text
+
+    texts = [
+        Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()
+    ]
+    folders = [Path(path) for path in options.runs if Path(path).is_dir()]
+    places = [path for folder in folders for path in (folder, folder / "figures")]
+    texts += [file for place in places for name in OF_STUDIES if begins_with_sum(file := place / name)]
+    found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
+    found += [(None, f"{folder}: {LOST}") for folder in folders if is_lost(folder)]
+    for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
+        problems, said = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)
+        differs |= bool(problems)
+        for text in problems:
+            complain(text)
+        for text in said:
+            line_beside_bars(f"{path}: {text}")
+    return FAILED if differs else 0
