@@ -11,7 +11,6 @@ from typing import Mapping
 
 import numpy as np
 
-from ..arguments import Kind, PATH, WrongArgument, number, shown, takes
 from .files import RunFolderError, array_names, read_arrays, read_json, read_sums
 from .format import (
     COLLISION,
@@ -27,7 +26,6 @@ from .format import (
     Quantity,
     RunKind,
 )
-from .named import Named, protect, unknown
 
 _STATE_NAME = re.compile(r"\d{6}\.npz")
 LARGEST = 1e100  # of a value in SI units: squares and sums of what a run can hold are finite
@@ -37,25 +35,13 @@ _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true o
 
 class State:
     """The grains at one time: an attribute for each quantity of runs.format.STATE, and of the kind of run; `time` is a
-    float [s], an optional one that the run does not have is None. The arrays are read-only.
+    float [s], an optional one that the run does not have is None.
 
     fragments() has a row for each piece."""
 
     def __init__(self, time, **arrays):
         optional = {quantity.name: None for quantity in STATE if quantity.optional}
         self.__dict__.update({**optional, "time": float(np.reshape(time, ())), **arrays})
-
-    def __setattr__(self, name, value):
-        raise AttributeError(f"a state cannot be changed ({name})")
-
-    def __getattr__(self, name):
-        if name.startswith("_"):  # what copying and notebooks ask every object for
-            raise AttributeError(name)
-        raise unknown("state", name, vars(self))
-
-    def __setstate__(self, values):
-        self.__dict__.update(values)
-        protect(values)
 
     def __repr__(self):
         from .shown import state_text
@@ -83,7 +69,7 @@ class StateSequence(Sequence):
     def __getitem__(self, index):
         if isinstance(index, slice):
             return StateSequence(self.files[index], self.kind, self.file_format, self.sums)
-        file = self._file(index)
+        file = self.files[index]
         return read_state(file, self.kind, self.file_format, self._sum(file))
 
     def __repr__(self):
@@ -101,24 +87,15 @@ class StateSequence(Sequence):
 
     def nearest(self, time):
         """Index of the state whose time is nearest to `time` [s]."""
-        number().require("time", time, {})
         return int(np.argmin(np.abs(self.times - time)))
 
     def arrays(self, index, names):
         """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
-        file = self._file(index)
+        file = self.files[index]
         arrays = read_arrays(file, names, sha256=self._sum(file))
         for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
             require_values(file, quantity, arrays[quantity.name])
         return arrays
-
-    def _file(self, index):
-        if not isinstance(index, (int, np.integer)):
-            raise WrongArgument(f"state {shown(index)}: must be a whole number, or a slice")
-        if not -len(self) <= index < len(self):
-            must = f"{-len(self)} to {len(self) - 1}" if self.files else "of a run that has left one"
-            raise IndexError(f"no state {index}: must be {must}")
-        return self.files[index]
 
     def _sum(self, file):
         return sum_in(self.sums, file.parent.parent, f"{STATES_FOLDER}/{file.name}")
@@ -171,7 +148,6 @@ class RunFolder:
         return self.states[index]
 
 
-@takes(path=Kind("the path of a run folder", PATH.is_right))
 def open_run(path):
     """RunFolder at `path`; RunFolderError when it is no run folder, has no history yet, or is damaged.
 
@@ -190,10 +166,10 @@ def open_run(path):
     return RunFolder(
         path=path,
         kind=kind,
-        parameters=Named(f"parameters of {path}", record["parameters"]),
-        derived=Named(f"derived constants of {path}", record["derived"]),
-        record=Named(f"{path / RUN_FILE}", record),
-        history=Named(f"history of {path}", _read_history(history, kind, file_format, sum_in(sums, path, HISTORY_FILE))),
+        parameters=record["parameters"],
+        derived=record["derived"],
+        record=record,
+        history=_read_history(history, kind, file_format, sum_in(sums, path, HISTORY_FILE)),
         states=StateSequence(state_files(path, sums), kind, file_format, sums),
         ended=sums is not None,
     )

@@ -7,7 +7,6 @@ import numpy as np
 import pandas
 
 from ..printable import suggested
-from ..runs.named import unknown
 from .estimate import Estimate, Fraction, curve, mean_over_points, stretch, weights_of_pairs
 
 SAME = 2e-3  # relative: numbers are printed so, 50.1 for 10^1.7
@@ -23,7 +22,7 @@ class Runs:
     pair        column that names a pair of aggregates
     population  columns whose values have pairs of their own (the number of grains: pair 1 of 500 is not pair 1 of 2,000)
 
-    UnknownName (KeyError) for a column that the table lacks, here and of `by` below."""
+    KeyError for a column that the table lacks, here and of `by` below."""
 
     def __init__(self, table, pair="seed", population=()):
         _columns(table, (pair, *population))
@@ -240,10 +239,10 @@ def _groups(own, by, levels=False):
 
 
 def _columns(table, names):
-    """Columns of a table, as values that are the same where they are printed so; UnknownName for one that it lacks."""
+    """Columns of a table, as values that are the same where they are printed so; KeyError for one that it lacks."""
     for name in names:
         if name not in table:
-            raise unknown("table of runs", name, table.columns)
+            raise KeyError(f"table of runs: no {name}{suggested(name, table.columns)}")
     return [table[name].map(_key) for name in names]
 
 

@@ -41,14 +41,13 @@ def test_examples_in_docstrings(name):
 
 
 def test_runs_and_states_are_a_few_lines_pickle_and_have_fragments(run):
-    for thing in (run, run.last, run.history, run.states):
+    for thing in (run, run.last, run.states):
         text = repr(thing).replace(str(run.path), "")
         assert len(text.splitlines()) < 12 and max(map(len, text.splitlines())) < 300
     assert "velocity 1 m/s" in repr(run) and "velocity 1 m/s" in run._repr_html_()
     copied, state = pickle.loads(pickle.dumps((run, run.last)))
     assert np.array_equal(copied.history["d"], run.history["d"]) and copied.parameters == run.parameters
     assert np.array_equal(state.position, copied.last.position)
-    assert not state.position.flags.writeable and not copied.history["d"].flags.writeable
     found, state = run.last.fragments(), run.last
     assert found.grains.sum() == len(state.radius) and found.mass_fraction.sum() == pytest.approx(1.0, rel=1e-12)
     assert (found.grains * found.coordination).sum() == 2 * len(state.contact_pairs)
