@@ -90,7 +90,8 @@ FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UNALIGNED_ARRAY_ASSERT \
                     -DBOOST_BIND_GLOBAL_PLACEHOLDERS -DBOOST_ALLOW_DEPRECATED_HEADERS # Boost.Python's own use of older Boost
 # Debian builds YADE without MPI on 64-bit ARM.
-YADE_FEATURES ?= $(shell sed -n "s/^features *= *'\(.*\)'.*/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+YADE_FEATURES ?= $(shell sed -n "s/^features *= *'\([^']*\)'.*/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+YADE = $(strip $(YADE_VERSION) $(YADE_FEATURES))
 YADE_DEFINITIONS += $(if $(filter MPI,$(YADE_FEATURES)),-DYADE_MPI)
 ifdef YADE_INCLUDE
 ifneq ($(words $(YADE_INCLUDE)),1)
@@ -132,7 +133,7 @@ LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VER
 # ---- what is built ----
 
 INTERFACE := contact_law/yade_interface
-YADE_SOURCES   := $(wildcard contact_law/yade/*.cpp $(INTERFACE)/proof/*.cpp)
+YADE_SOURCES   := $(wildcard contact_law/yade/*.cpp $(INTERFACE)/*.cpp)
 ENGINE_SOURCES := $(filter-out $(if $(filter x86_64,$(PROCESSOR)),,%/avx2.cpp %/avx512.cpp),$(wildcard contact_law/engine/*.cpp))
 YADE_OBJECTS   := $(YADE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
@@ -158,7 +159,7 @@ endif
 endif
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
-$(PLUGIN): $(OBJECTS) build/objects.list build/yade_version.list | build/overlay
+$(PLUGIN): $(OBJECTS) build/objects.list build/yade.list | build/overlay
 	@echo "link    $@"
 	@$(CXX) $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
 
@@ -178,12 +179,9 @@ $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
 	@cp $< $(PRECOMPILED)
 	@$(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
 
-# The commit goes into one object.
-$(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: build/commit.list
-$(OBJECTS_FOLDER)/yade_interface/proof/plugin.o: YADE_DEFINITIONS += -DCONTACT_LAW_COMMIT='"$(COMMIT)"'
-
-$(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: build/yade_version.list
-$(OBJECTS_FOLDER)/yade_interface/proof/members_compared.o: YADE_DEFINITIONS += -DCONTACT_LAW_YADE_VERSION='"$(YADE_VERSION)"'
+# The commit, and what the plugin is compiled for, go into one object.
+$(OBJECTS_FOLDER)/yade_interface/plugin.o: build/commit.list build/yade.list
+$(OBJECTS_FOLDER)/yade_interface/plugin.o: YADE_DEFINITIONS += -DCONTACT_LAW_COMMIT='"$(COMMIT)"' -DCONTACT_LAW_YADE='"$(YADE)"'
 
 # Changed only when what they hold changes, so that objects are made again then, and only then.
 # The commit is the last that changed what runs are made by: checkpoints outlive the others.
@@ -196,13 +194,13 @@ build/$1.list: always
 endef
 .PHONY: always
 $(eval $(call LIST,commit,$(COMMIT)))
-$(eval $(call LIST,yade_version,$(YADE_VERSION)))
+$(eval $(call LIST,yade,$(YADE)))
 $(eval $(call LIST,objects,$(OBJECTS)))
 $(eval $(call LIST,flags,$(shell $(CXX) --version | head -1) $(YADE_CXX) $(LINK) $(LIBRARIES) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
 
 # Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
 # That to contact_law is relative: in an installation it leads to the package there.
-build/overlay: Makefile build/yade_version.list
+build/overlay: Makefile build/yade.list
 	@mkdir -p $(OVERLAY) build/bin
 	@ln -sfn $(filter-out %/py,$(wildcard $(YADE_LIBRARIES)/*)) $(OVERLAY)/
 	@rm -rf $(OVERLAY)/py && mkdir $(OVERLAY)/py

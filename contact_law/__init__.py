@@ -12,9 +12,19 @@ import ctypes
 import os
 import sys
 
-from .grain_arrays import snapshot  # noqa: F401 (of the package)
-from .sintering import sinter  # noqa: F401
-from .yade_functions import give_way, restore_forces, show_contacts
+from .scene import give_way, restore_forces, show_contacts, sinter, snapshot
+
+CLASSES = [
+    "JKRMat",
+    "JKRWadaConstants",
+    "JKRWadaBond",
+    "JKRWadaPhys",
+    "Ip2_JKRMat_JKRMat_JKRWadaPhys",
+    "Law2_ScGeom_JKRWadaPhys_JKRWada",
+    "JKRWadaEngine",
+    "JKRWadaSnapshot",
+]
+__all__ = [*CLASSES, "snapshot", "sinter"]
 
 TOP = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:
@@ -31,16 +41,18 @@ def _running_yade():
 
 
 def _load(yade):
-    """Opens the library and takes its classes to YADE; ImportError with one line if that cannot be."""
+    """Open the library and take its classes to YADE; ImportError with one line if that cannot be."""
     if not os.path.exists(LIBRARY):
         raise ImportError(f"contact_law isn't built: {LIBRARY} is missing; run 'make' in {TOP}")
-    with open(os.path.join(TOP, "build/yade_version.list")) as file:
-        described = file.read().strip()
-    version = yade.config.version
-    if version != described:  # before anything of the library is touched
+    with open(os.path.join(TOP, "build/yade.list")) as file:
+        described = file.read().split()
+    running = [yade.config.version, *yade.config.features]
+    if running != described:  # before anything of the library is touched
+        other = " ".join(sorted(set(running) ^ set(described)))
         raise ImportError(
-            f"contact_law: refusing to load: this is YADE {version}, not {described} (yade.config.version). It was compiled for YADE {described}; "
-            "run make again with this one, or compile against its source: make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version."
+            f"contact_law: refusing to load: this is YADE {yade.config.version}, not that for which it was compiled, {described[0]} "
+            f"(they differ in {other}); run make again with this one, or compile against its source: "
+            "make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version"
         )
     try:
         # PyDLL keeps Python's lock, which the library needs. Like YADE's own libraries, it shares its symbols.
@@ -48,62 +60,64 @@ def _load(yade):
     except OSError as error:
         raise ImportError(f"contact_law: cannot open the plugin: {error}; run 'make' again on this machine") from None
     library.contact_law_load.restype = ctypes.c_char_p
-    refusal = library.contact_law_load().decode()
-    if refusal:
-        raise ImportError(refusal)
+    refusal = library.contact_law_load(" ".join(CLASSES).encode()).decode()
+    if refusal or not hasattr(yade.wrapper, "JKRMat"):
+        raise ImportError(f"contact_law: refusing to load: {refusal or 'it was compiled for another YADE'}")
 
 
 def _rebuild_dispatchers(yade):
-    """Makes the engines that choose functors by class anew.
+    """Make the engines that choose functors by class anew.
 
     Their tables are as long as the list of classes was when they were made; a new class would lie past the end, and YADE would abort.
     The functors stay the same objects.
     """
+    dispatchers = ("InteractionLoop", "IPhysDispatcher", "LawDispatcher")
 
     def renewed(engine):
         name = type(engine).__name__
+        if name not in dispatchers:
+            return engine
         if name == "InteractionLoop":
             arguments = [engine.geomDispatcher.functors, engine.physDispatcher.functors, engine.lawDispatcher.functors]
-        elif name in ("IPhysDispatcher", "LawDispatcher"):
-            arguments = [engine.functors]
         else:
-            return engine
+            arguments = [engine.functors]
         new = type(engine)(*arguments)
-        dispatchers = ("geomDispatcher", "physDispatcher", "lawDispatcher", "functors")
-        new.updateAttrs({name: value for name, value in engine.dict().items() if name not in dispatchers})
+        given = ("geomDispatcher", "physDispatcher", "lawDispatcher", "functors")
+        new.updateAttrs({name: value for name, value in engine.dict().items() if name not in given})
         return new
 
-    if any(
-        type(engine).__name__ in ("InteractionLoop", "IPhysDispatcher", "LawDispatcher") for engine in yade.O.engines
-    ):
+    if any(type(engine).__name__ in dispatchers for engine in yade.O.engines):
         yade.O.engines = [renewed(engine) for engine in yade.O.engines]
     yade.utils.defaultEngines = [renewed(engine) for engine in yade.utils.defaultEngines]
 
 
-def _publish(yade, names):
+def _publish(yade):
     """The classes by their names: here, in yade, and where YADE's scripts run."""
-    classes = {name: getattr(yade.wrapper, name) for name in names}
+    classes = {name: getattr(yade.wrapper, name) for name in CLASSES}
     for namespace in (globals(), vars(yade), vars(sys.modules["__main__"])):
         namespace.update(classes)
-    yade.__all__ += [name for name in names if name not in yade.__all__]
+    yade.__all__ += [name for name in CLASSES if name not in yade.__all__]
+
+
+def _text(function):
+    """What a function of the plugin that YADE has loaded returns."""
+    found = getattr(ctypes.PyDLL(None), function)
+    found.restype = ctypes.c_char_p
+    return found().decode()
 
 
 def _start():
-    """Everything that importing does. Returns the names of the classes, the commit and the energy channels."""
+    """Everything that importing does. Returns the commit and the energy channels."""
     yade = _running_yade()
-    if not hasattr(yade.wrapper, "ContactLawPlugin"):
+    if not hasattr(yade.wrapper, "JKRMat"):
         _load(yade)
         _rebuild_dispatchers(yade)
-    plugin = yade.wrapper.ContactLawPlugin
-    if plugin.refusal:
-        raise ImportError(plugin.refusal)
-    names = list(plugin.classNames)
-    _publish(yade, names)
+    _publish(yade)
     give_way(yade)
     restore_forces(yade)
     show_contacts(yade, vars(sys.modules["__main__"]))
-    return names, plugin.commit, plugin.channels
+    words = _text("contact_law_channels").split()
+    return _text("contact_law_commit"), tuple(zip(words[::2], words[1::2]))
 
 
-__all__, commit, channels = _start()
-__all__ += ["snapshot", "sinter"]
+commit, channels = _start()

@@ -286,7 +286,7 @@ def _fill(new, beside):
 def _plan():
     """{path in the installation: file or link that is copied there}."""
     files = [file for package, patterns in COPIED.items() for each in patterns for file in (TOP / package).glob(each)]
-    files += [TOP / "build" / name for name in ("yade_version.list", "commit.list")]
+    files += [TOP / "build" / name for name in ("yade.list", "commit.list")]
     for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
         files += _files(TOP / "build" / part)
     return {str(file.relative_to(TOP)): file for file in files}

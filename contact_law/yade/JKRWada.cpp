@@ -4,9 +4,6 @@
 #include "KernelVectors.hpp"
 #include "RunningLoop.hpp"
 #include <core/Body.hpp>
-#include <core/Cell.hpp>
-#include <core/EnergyTracker.hpp>
-#include <core/State.hpp>
 #include <sstream>
 
 namespace yade {

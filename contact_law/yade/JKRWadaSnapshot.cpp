@@ -4,9 +4,7 @@
 #include "RunningLoop.hpp"
 #include "SceneShapes.hpp"
 #include <core/Body.hpp>
-#include <core/Cell.hpp>
 #include <core/Omega.hpp>
-#include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <algorithm>
 #include <vector>

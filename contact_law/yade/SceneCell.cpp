@@ -1,6 +1,5 @@
 #include "SceneCell.hpp"
 #include "Refusal.hpp"
-#include <core/Cell.hpp>
 
 namespace yade {
 

@@ -4,7 +4,6 @@
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"
 #include <core/Body.hpp>
-#include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <algorithm>
 

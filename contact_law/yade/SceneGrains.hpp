@@ -6,7 +6,6 @@
 #include "ScenePlanes.hpp"
 #include <core/Body.hpp>
 #include <core/Scene.hpp>
-#include <core/State.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include "../engine/dynamics.hpp"
 #include <core/Body.hpp>
 #include <core/Scene.hpp>
-#include <core/State.hpp>
 #include <pkg/common/Wall.hpp>
 #include <string>
 #include <vector>

@@ -3,8 +3,6 @@
 #include "JKRWada.hpp"
 #include "Refusal.hpp"
 #include <core/Body.hpp>
-#include <core/BodyContainer.hpp>
-#include <core/Cell.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/common/Wall.hpp>
 #include <mutex>

@@ -1,14 +1,86 @@
-// A body: material, state and shape.
+// A body: material, shape and state.
 #pragma once
-#include <core/Material.hpp>
-#include <core/Shape.hpp>
-#include <core/State.hpp>
+#include <lib/multimethods/Indexable.hpp>
+#include <lib/serialization/Serializable.hpp>
 #include <map>
+#include <pthread.h>
 
 namespace yade {
 
 class Bound;
 class Interaction;
+class State;
+
+// Material properties, shared by bodies.
+class Material : public Serializable, public Indexable {
+public:
+	~Material() override;
+	virtual shared_ptr<State> newAssocState() const;
+	virtual bool stateTypeOk(State*) const;
+	Material() {} // not exported: the defaults below are YADE's
+	YADE_INTERFACE_OVERRIDES_(Material)
+	REGISTER_INDEX_COUNTER(Material);
+
+	int id = -1; // in O.materials
+	string label;
+	Real density = 1000;
+};
+
+// What a body looks like to colliders and geometry functors.
+class Shape : public Serializable, public Indexable {
+public:
+	~Shape() override;
+	YADE_INTERFACE_OVERRIDES_(Shape)
+	REGISTER_INDEX_COUNTER(Shape);
+
+private:
+	// caches of functors; this file needs no more of them than their room
+	shared_ptr<Factorable> boundFunctor, internalForceFunctor;
+
+public:
+	Vector3r color;
+	bool wire, highlight;
+
+protected:
+	Shape(); // made by YADE only
+};
+
+// Where a body is and how it moves.
+class State : public Serializable, public Indexable {
+public:
+	enum {
+		DOF_NONE = 0,
+		DOF_X = 1,
+		DOF_Y = 2,
+		DOF_Z = 4,
+		DOF_RX = 8,
+		DOF_RY = 16,
+		DOF_RZ = 32,
+		DOF_ALL = 63,
+		DOF_XYZ = 7,
+		DOF_RXRYRZ = 56
+	};
+
+	State();
+	~State() override;
+	YADE_INTERFACE_OVERRIDES_(State)
+	REGISTER_INDEX_COUNTER(State);
+
+	Vector3r& pos;    // = se3.position
+	Quaternionr& ori; // = se3.orientation
+	pthread_mutex_t updateMutex;
+	Se3r se3;
+	Vector3r vel;
+	Real mass;
+	Vector3r angVel;
+	Vector3r angMom;
+	Vector3r inertia;
+	Vector3r refPos;
+	Quaternionr refOri;
+	unsigned int blockedDOFs;
+	bool isDamped;
+	Real densityScaling;
+};
 
 class Body : public Serializable {
 public:
@@ -43,15 +115,8 @@ public:
 	long iterBorn;
 	Real timeBorn;
 };
-static_assert(sizeof(Body) == 176, "Body");
-YADE_INTERFACE_AT_(Body, id, 24)
-YADE_INTERFACE_AT_(Body, groupMask, 28)
-YADE_INTERFACE_AT_(Body, flags, 32)
-YADE_INTERFACE_AT_(Body, material, 40)
-YADE_INTERFACE_AT_(Body, state, 56)
-YADE_INTERFACE_AT_(Body, shape, 72)
-YADE_INTERFACE_AT_(Body, bound, 88)
-YADE_INTERFACE_AT_(Body, intrs, 104)
-YADE_INTERFACE_AT_(Body, clumpId, 152)
 
 } // namespace yade
+
+SAVED_BY_YADE(Material)
+SAVED_BY_YADE(State)

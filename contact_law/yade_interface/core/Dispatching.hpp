@@ -1,9 +1,80 @@
-// The functors of InteractionLoop that a contact law derives from.
+// Functors, which dispatchers choose by the classes of their arguments, and those of InteractionLoop that a contact law derives from.
 #pragma once
-#include <core/Functor.hpp>
 #include <core/Interaction.hpp>
+#include <boost/mpl/at.hpp>
+#include <boost/mpl/size.hpp>
+#include <boost/mpl/vector.hpp>
+#include <boost/mpl/void.hpp>
+#include <stdexcept>
 
 namespace yade {
+
+class Scene;
+class TimingDeltas;
+
+/* The call operator of functors: go with one to seven arguments and its reverse, of which the final class overrides one. Slots past the
+ * functor's own arguments take boost::mpl::void_. Order and number of the virtual functions are those of YADE's tables. */
+template <class Result, class Arguments> class FunctorWrapper {
+	template <int i, bool inside = (i < boost::mpl::size<Arguments>::value)> struct At {
+		using type = boost::mpl::void_;
+	};
+	template <int i> struct At<i, true> {
+		using type = typename boost::mpl::at_c<Arguments, i>::type;
+	};
+	using A1 = typename At<0>::type;
+	using A2 = typename At<1>::type;
+	using A3 = typename At<2>::type;
+	using A4 = typename At<3>::type;
+	using A5 = typename At<4>::type;
+	using A6 = typename At<5>::type;
+	using A7 = typename At<6>::type;
+
+	[[noreturn]] static Result notOverridden()
+	{
+		throw std::logic_error("a functor was called with a number of arguments that it does not take");
+	}
+
+public:
+	virtual ~FunctorWrapper() {}
+	virtual std::string checkOrder() const { return ""; }
+	virtual Result go(A1) { return notOverridden(); }
+	virtual Result go(A1, A2) { return notOverridden(); }
+	virtual Result go(A1, A2, A3) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
+	virtual Result go(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
+	virtual Result goReverse(A1) { return notOverridden(); }
+	virtual Result goReverse(A1, A2) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5, A6) { return notOverridden(); }
+	virtual Result goReverse(A1, A2, A3, A4, A5, A6, A7) { return notOverridden(); }
+};
+
+class Functor : public Serializable {
+public:
+	Functor()
+	        : scene(nullptr)
+	{
+	} // not exported
+	~Functor() override;
+	YADE_INTERFACE_OVERRIDES_(Functor)
+	virtual std::vector<std::string> getFunctorTypes() const;
+
+	shared_ptr<TimingDeltas> timingDeltas;
+	Scene* scene; // set before every loop
+	string label;
+};
+
+template <class Dispatch1, class Dispatch2, class Result, class Arguments>
+class Functor2D : public Functor, public FunctorWrapper<Result, Arguments> {
+public:
+	std::vector<std::string> getFunctorTypes() const override { return { get2DFunctorType1(), get2DFunctorType2() }; }
+	virtual std::string get2DFunctorType1() const { throw std::logic_error(getClassName() + " doesn't say what it takes (FUNCTOR2D)"); }
+	virtual std::string get2DFunctorType2() const { throw std::logic_error(getClassName() + " doesn't say what it takes (FUNCTOR2D)"); }
+};
 
 // The types of the arguments are part of the base classes' names and must be exactly these.
 using IPhysFunctorBase_ = Functor2D<Material, Material, void,
@@ -16,7 +87,6 @@ public:
 	~IPhysFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(IPhysFunctor)
 };
-static_assert(sizeof(IPhysFunctor) == 88, "IPhysFunctor");
 
 // go() returns false to have the interaction deleted
 class LawFunctor : public LawFunctorBase_ {
@@ -25,9 +95,15 @@ public:
 	~LawFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(LawFunctor)
 };
-static_assert(sizeof(LawFunctor) == 88, "LawFunctor");
 
 } // namespace yade
 
+SAVED_BY_YADE(Functor)
 SAVED_BY_YADE(IPhysFunctor)
 SAVED_BY_YADE(LawFunctor)
+
+#define FUNCTOR2D(Type1, Type2)                                                                                                            \
+public:                                                                                                                                    \
+	std::string get2DFunctorType1() const override { return #Type1; }                                                                  \
+	std::string get2DFunctorType2() const override { return #Type2; }                                                                  \
+	static_assert(true, "")

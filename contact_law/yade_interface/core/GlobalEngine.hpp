@@ -1,17 +1,41 @@
-// An engine that acts on the whole scene.
+// What stands in O.engines.
 #pragma once
-#include <core/Engine.hpp>
+#include <lib/serialization/Serializable.hpp>
 
 namespace yade {
 
+class Scene;
+class TimingDeltas;
+
+class Engine : public Serializable {
+public:
+	Engine();
+	~Engine() override;
+	YADE_INTERFACE_OVERRIDES_(Engine)
+	virtual bool isActivated();
+	virtual void action();
+
+	Scene* scene; // set before action() is called
+
+private:
+	long timingInfo[2]; // calls, nanoseconds
+	shared_ptr<TimingDeltas> timingDeltas;
+
+public:
+	bool dead;
+	int ompThreads;
+	string label;
+};
+
+// An engine that acts on the whole scene.
 class GlobalEngine : public Engine {
 public:
 	GlobalEngine() {} // not exported
 	~GlobalEngine() override;
 	YADE_INTERFACE_OVERRIDES_(GlobalEngine)
 };
-static_assert(sizeof(GlobalEngine) == 104, "GlobalEngine");
 
 } // namespace yade
 
+SAVED_BY_YADE(Engine)
 SAVED_BY_YADE(GlobalEngine)

@@ -1,14 +1,30 @@
 // A pair of bodies that touch or may touch.
 #pragma once
 #include <core/Body.hpp>
-#include <core/IGeom.hpp>
-#include <core/IPhys.hpp>
 
 namespace yade {
 
 class IGeomFunctor;
 class IPhysFunctor;
 class LawFunctor;
+
+// Geometry of a contact.
+class IGeom : public Serializable, public Indexable {
+public:
+	IGeom() {}
+	~IGeom() override;
+	YADE_INTERFACE_OVERRIDES_(IGeom)
+	REGISTER_INDEX_COUNTER(IGeom);
+};
+
+// Physics of a contact.
+class IPhys : public Serializable, public Indexable {
+public:
+	IPhys() {}
+	~IPhys() override;
+	YADE_INTERFACE_OVERRIDES_(IPhys)
+	REGISTER_INDEX_COUNTER(IPhys);
+};
 
 class Interaction : public Serializable {
 public:
@@ -40,17 +56,8 @@ public:
 	int linIx;
 	long iterBorn;
 };
-static_assert(sizeof(Interaction) == 168, "Interaction");
-YADE_INTERFACE_AT_(Interaction, isActive, 24)
-YADE_INTERFACE_AT_(Interaction, functorCache, 32)
-YADE_INTERFACE_AT_(Interaction, id1, 88)
-YADE_INTERFACE_AT_(Interaction, id2, 92)
-YADE_INTERFACE_AT_(Interaction, iterMadeReal, 96)
-YADE_INTERFACE_AT_(Interaction, iterLastSeen, 104)
-YADE_INTERFACE_AT_(Interaction, geom, 112)
-YADE_INTERFACE_AT_(Interaction, phys, 128)
-YADE_INTERFACE_AT_(Interaction, cellDist, 144)
-YADE_INTERFACE_AT_(Interaction, linIx, 156)
-YADE_INTERFACE_AT_(Interaction, iterBorn, 160)
 
 } // namespace yade
+
+SAVED_BY_YADE(IGeom)
+SAVED_BY_YADE(IPhys)

@@ -1,7 +1,6 @@
 // The running YADE. Its object lives in libyade and only exported functions are called: its layout doesn't matter here.
 #pragma once
 #include <core/Scene.hpp>
-#include <lib/base/Singleton.hpp>
 
 namespace yade {
 

@@ -1,14 +1,158 @@
-// The simulation: bodies, interactions, forces, time. Made by YADE only.
+// The simulation: bodies, interactions, forces, energies, cell and time. YADE alone makes these objects.
 #pragma once
-#include <core/BodyContainer.hpp>
-#include <core/Cell.hpp>
-#include <core/EnergyTracker.hpp>
-#include <core/ForceContainer.hpp>
-#include <core/InteractionContainer.hpp>
+#include <core/Interaction.hpp>
+#include <boost/iterator/filter_iterator.hpp>
+#include <map>
+#include <vector>
 
 namespace yade {
 
 class Engine;
+
+// All bodies by id. Erased ones leave an empty pointer, which operator[] shows and the iterator skips.
+class BodyContainer : public Serializable {
+public:
+	using ContainerT = std::vector<shared_ptr<Body>>;
+	struct IsThere {
+		bool operator()(const shared_ptr<Body>& body) const { return bool(body); }
+	};
+	using iterator = boost::filter_iterator<IsThere, ContainerT::iterator>;
+
+	~BodyContainer() override;
+	YADE_INTERFACE_OVERRIDES_(BodyContainer)
+
+	// Always inline: libyade exports functions of these names, whose iterator is another type.
+	[[gnu::always_inline]] iterator begin() { return iterator(IsThere(), body.begin(), body.end()); }
+	[[gnu::always_inline]] iterator end() { return iterator(IsThere(), body.end(), body.end()); }
+	[[gnu::always_inline]] size_t size() const { return body.size(); }
+	[[gnu::always_inline]] shared_ptr<Body>& operator[](unsigned int id) { return body[id]; }
+	[[gnu::always_inline]] const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
+	[[gnu::always_inline]] bool exists(Body::id_t id) const { return id >= 0 && size_t(id) < body.size() && bool(body[size_t(id)]); }
+
+	Body::id_t insert(shared_ptr<Body>);
+
+private:
+	BodyContainer(); // made by YADE only
+	ContainerT body;
+
+public:
+	bool dirty, checkedByCollider;
+	std::vector<int> insertedBodies, erasedBodies, realBodies;
+	bool useRedirection, enableRedirection;
+
+private:
+#ifdef YADE_MPI
+	std::vector<int> subdomainBodies;
+#endif
+	pthread_mutex_t drawloopmutex;
+};
+
+// All interactions, real and potential.
+class InteractionContainer : public Serializable {
+public:
+	using ContainerT = std::vector<shared_ptr<Interaction>>;
+	using iterator = ContainerT::iterator;
+
+	~InteractionContainer() override;
+	YADE_INTERFACE_OVERRIDES_(InteractionContainer)
+
+	[[gnu::always_inline]] iterator begin() { return linIntrs.begin(); }
+	[[gnu::always_inline]] iterator end() { return linIntrs.end(); }
+	[[gnu::always_inline]] size_t size() { return currSize; } // not const in YADE either
+	[[gnu::always_inline]] const shared_ptr<Interaction>& operator[](size_t i) const { return linIntrs[i]; }
+
+	const shared_ptr<Interaction>& find(Body::id_t id1, Body::id_t id2);
+	bool insert(const shared_ptr<Interaction>&);
+	bool erase(Body::id_t id1, Body::id_t id2, int linPos);
+	void requestErase(const shared_ptr<Interaction>&);
+	void eraseNonReal();
+	void clear();
+
+private:
+	InteractionContainer(); // made by YADE only
+	ContainerT linIntrs, sortedIntrs;
+	const std::vector<shared_ptr<Body>>* bodies;
+	size_t currSize;
+	shared_ptr<Interaction> empty;
+
+public:
+	std::vector<shared_ptr<Interaction>> interaction; // filled while saving and loading
+	bool dirty;
+
+private:
+	pthread_mutex_t drawloopmutex;
+
+public:
+	bool serializeSorted;
+	long iterColliderLastRun;
+};
+
+// Forces and torques on bodies. libyade exports all functions; the members are room only.
+class ForceContainer {
+	char room[264 + sizeof(pthread_mutex_t)] __attribute__((aligned(8)));
+	ForceContainer(); // made by YADE only, inside of Scene
+	ForceContainer(const ForceContainer&);
+
+public:
+	// safe from InteractionLoop's threads
+	void addForce(Body::id_t, const Vector3r&);
+	void addTorque(Body::id_t, const Vector3r&);
+	// valid after sync()
+	const Vector3r& getForce(Body::id_t);
+	const Vector3r& getTorque(Body::id_t);
+	// permanent ones (O.forces.setPermF, setPermT); valid after sync()
+	const Vector3r& getPermForce(Body::id_t);
+	const Vector3r& getPermTorque(Body::id_t);
+	void setPermForce(Body::id_t, const Vector3r&);
+	void setPermTorque(Body::id_t, const Vector3r&);
+	bool getPermForceUsed() const; // whether any was ever set
+	void sync();
+	void reset(long iter, bool resetAll = false); // resetAll: permanent forces (O.forces.setPermF) too
+};
+
+// O.energy: sums by name.
+class EnergyTracker : public Serializable {
+	char energies[64] __attribute__((aligned(8)));
+	EnergyTracker(); // made by YADE only
+
+public:
+	~EnergyTracker() override;
+	YADE_INTERFACE_OVERRIDES_(EnergyTracker)
+
+	// id is kept by the caller for the name, and starts at -1; reset: the sum starts anew each step. Exported by libpkg_dem. Not safe against
+	// concurrent first calls of a name, and ids are stale after O.energy.clear().
+	void add(const Real& value, const std::string& name, int& id, bool reset = false);
+	std::map<std::string, int> names; // ids
+	Real total() const;
+	// What O.energy[name] = value calls, with no Python in it; makes the name if it is not there.
+	void setItem_py(const std::string& name, Real value);
+
+private:
+	char more[40] __attribute__((aligned(8)));
+};
+
+// The periodic cell. No function of it that shifts positions is exported.
+class Cell : public Serializable {
+public:
+	Cell();
+	~Cell() override;
+	void integrateAndUpdate(Real dt); // deforms it by velGrad through dt [s]
+	YADE_INTERFACE_OVERRIDES_(Cell)
+
+private:
+	char room[568] __attribute__((aligned(8))); // shear and size derived from hSize
+
+public:
+	Matrix3r trsf;
+	Matrix3r refHSize;
+	Matrix3r hSize; // columns are the cell's edges
+	Matrix3r prevHSize;
+	Matrix3r velGrad;
+	Matrix3r nextVelGrad;
+	Matrix3r prevVelGrad;
+	int homoDeform;
+	bool velGradChanged, flipFlippable;
+};
 
 class Scene : public Serializable {
 public:
@@ -40,7 +184,10 @@ public:
 	bool runInternalConsistencyChecks;
 
 private:
-	char room2[4 + declare::subdomain] __attribute__((aligned(4))); // selected body, subdomain
+	int selectedBody;
+#ifdef YADE_MPI
+	int subdomain[6]; // and communicator
+#endif
 
 public:
 	std::vector<std::string> tags;
@@ -56,23 +203,5 @@ public:
 private:
 	char room3[48] __attribute__((aligned(8))); // parameters for display and others
 };
-static_assert(sizeof(Scene) == 688 + declare::mutex + declare::subdomain, "Scene");
-YADE_INTERFACE_AT_(Scene, forces, 32)
-YADE_INTERFACE_AT_(Scene, dt, 400 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, iter, 408 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, subStep, 420 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, time, 424 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, stopAtIter, 440 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, stopAtTime, 448 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, isPeriodic, 456 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, trackEnergy, 457 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, doSort, 458 + declare::mutex)
-YADE_INTERFACE_AT_(Scene, tags, 464 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, engines, 488 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, bodies, 536 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, interactions, 552 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, energy, 568 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, materials, 584 + declare::mutex + declare::subdomain)
-YADE_INTERFACE_AT_(Scene, cell, 624 + declare::mutex + declare::subdomain)
 
 } // namespace yade

@@ -1,9 +1,12 @@
 /* The attributes of a class, ((type, name, default, flags, "documentation")) each, as one list that a visitor is taken through:
    every use of the list (Python properties, dictionary, saving) is a function here, none is written out per class. */
 #pragma once
-#include <boost/preprocessor.hpp>
 #include <boost/python.hpp>
+#include <boost/preprocessor.hpp>
+#include <boost/python/raw_function.hpp>
 #include <boost/serialization/nvp.hpp>
+#include <boost/shared_ptr.hpp>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -89,6 +92,24 @@ namespace attributes {
 		});
 	}
 
+	// YADE's objects are made from keywords only, except where a class takes its positional arguments itself (pyHandleCustomCtorArgs).
+	template <class T> boost::shared_ptr<T> construct(boost::python::tuple positional, boost::python::dict named)
+	{
+		boost::shared_ptr<T> instance(new T);
+		instance->pyHandleCustomCtorArgs(positional, named);
+		if (boost::python::len(positional) > 0)
+			throw std::runtime_error(instance->getClassName() + ": takes attributes by name only, " + instance->getClassName()
+			        + "(attribute=value, ...)");
+		if (boost::python::len(named) > 0) instance->pyUpdateAttrs(named);
+		return instance;
+	}
+
+	template <class T> boost::python::object initialize(boost::python::tuple arguments, boost::python::dict named)
+	{
+		const boost::python::object constructor = boost::python::make_constructor(&construct<T>);
+		return constructor(boost::python::object(arguments[0]), boost::python::tuple(arguments.slice(1, boost::python::_)), named);
+	}
+
 } // namespace attributes
 } // namespace yade
 
@@ -151,7 +172,7 @@ public:                                                                         
 		const boost::python::docstring_options show(true, true, false);                                                            \
 		boost::python::class_<Class, boost::shared_ptr<Class>, boost::python::bases<Base>, boost::noncopyable> pythonClass(        \
 		        #Class, doc, boost::python::no_init);                                                                              \
-		pythonClass.def("__init__", boost::python::raw_function(&::yade::python::initialize<Class>, 1));                           \
+		pythonClass.def("__init__", boost::python::raw_function(&::yade::attributes::initialize<Class>, 1));                       \
 		::yade::attributes::addProperties<Class>(pythonClass);                                                                     \
 		(void)pythonClass pythonExtras;                                                                                            \
 	}                                                                                                                                  \

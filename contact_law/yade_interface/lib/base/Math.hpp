@@ -54,9 +54,6 @@ using Se3r = Se3<Real>;
 
 const Real NaN = std::numeric_limits<Real>::quiet_NaN();
 
-static_assert(sizeof(Vector3r) == 24 && sizeof(Vector3i) == 12 && sizeof(Matrix3r) == 72 && sizeof(Quaternionr) == 32 && sizeof(Se3r) == 56,
-        "Eigen's layouts");
-
 } // namespace yade
 
 // YADE marks these types so; an archive written with other marks is not read back.

@@ -17,7 +17,6 @@ public:
 protected:
 	void createIndex(); // exported by libpkg_common; every class below the topmost one calls it in its own constructor
 };
-static_assert(sizeof(Indexable) == 8, "Indexable");
 
 } // namespace yade
 

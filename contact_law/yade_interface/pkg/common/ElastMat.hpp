@@ -1,6 +1,6 @@
 // Elastic material: the base of JKRMat.
 #pragma once
-#include <core/Material.hpp>
+#include <core/Body.hpp>
 
 namespace yade {
 
@@ -14,9 +14,6 @@ public:
 	Real young = 1e9;
 	Real poisson = 0.25;
 };
-static_assert(sizeof(ElastMat) == 96, "ElastMat");
-YADE_INTERFACE_AT_(ElastMat, young, 80)
-YADE_INTERFACE_AT_(ElastMat, poisson, 88)
 
 } // namespace yade
 

@@ -1,6 +1,6 @@
 // Contact with a normal and a shear force, which YADE's recorders and stress functions read: the base of JKRWadaPhys.
 #pragma once
-#include <core/IPhys.hpp>
+#include <core/Interaction.hpp>
 
 namespace yade {
 
@@ -14,9 +14,6 @@ public:
 	Real kn;
 	Vector3r normalForce;
 };
-static_assert(sizeof(NormPhys) == 64, "NormPhys");
-YADE_INTERFACE_AT_(NormPhys, kn, 32)
-YADE_INTERFACE_AT_(NormPhys, normalForce, 40)
 
 class NormShearPhys : public NormPhys {
 public:
@@ -28,9 +25,6 @@ public:
 	Real ks;
 	Vector3r shearForce;
 };
-static_assert(sizeof(NormShearPhys) == 96, "NormShearPhys");
-YADE_INTERFACE_AT_(NormShearPhys, ks, 64)
-YADE_INTERFACE_AT_(NormShearPhys, shearForce, 72)
 
 } // namespace yade
 

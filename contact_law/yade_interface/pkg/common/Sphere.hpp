@@ -1,6 +1,6 @@
 // A sphere about the body's position.
 #pragma once
-#include <core/Shape.hpp>
+#include <core/Body.hpp>
 
 namespace yade {
 
@@ -13,7 +13,5 @@ public:
 
 	Real radius;
 };
-static_assert(sizeof(Sphere) == 104, "Sphere");
-YADE_INTERFACE_AT_(Sphere, radius, 96)
 
 } // namespace yade

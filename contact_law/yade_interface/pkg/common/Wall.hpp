@@ -1,6 +1,6 @@
 // An infinite plane across an axis, through the body's position.
 #pragma once
-#include <core/Shape.hpp>
+#include <core/Body.hpp>
 
 namespace yade {
 
@@ -14,8 +14,5 @@ public:
 	int sense; // side on which it meets spheres; 0: both
 	int axis;
 };
-static_assert(sizeof(Wall) == 104, "Wall");
-YADE_INTERFACE_AT_(Wall, sense, 92)
-YADE_INTERFACE_AT_(Wall, axis, 96)
 
 } // namespace yade

@@ -1,6 +1,6 @@
 // Geometry of two touching spheres, as Ig2_Sphere_Sphere_ScGeom makes it. Read here, never derived from.
 #pragma once
-#include <core/IGeom.hpp>
+#include <core/Interaction.hpp>
 
 namespace yade {
 
@@ -17,11 +17,6 @@ public:
 protected:
 	GenericSpheresContact(); // made by YADE only
 };
-static_assert(sizeof(GenericSpheresContact) == 96, "GenericSpheresContact");
-YADE_INTERFACE_AT_(GenericSpheresContact, normal, 32)
-YADE_INTERFACE_AT_(GenericSpheresContact, contactPoint, 56)
-YADE_INTERFACE_AT_(GenericSpheresContact, refR1, 80)
-YADE_INTERFACE_AT_(GenericSpheresContact, refR2, 88)
 
 class ScGeom : public GenericSpheresContact {
 	Vector3r twist_axis, orthonormal_axis;
@@ -37,8 +32,5 @@ public:
 	Real penetrationDepth;
 	Vector3r shearInc;
 };
-static_assert(sizeof(ScGeom) == 192, "ScGeom");
-YADE_INTERFACE_AT_(ScGeom, penetrationDepth, 160)
-YADE_INTERFACE_AT_(ScGeom, shearInc, 168)
 
 } // namespace yade

@@ -1,0 +1,155 @@
+"""The running scene: its arrays, its sintering, and YADE's own calls in scenes that JKRWadaEngine moves."""
+
+import functools
+import threading
+
+import numpy as np
+
+ROWS = {
+    "ids": (np.int32, ()),
+    "position": (float, (3,)),
+    "velocity": (float, (3,)),
+    "angular_velocity": (float, (3,)),
+    "radius": (float, ()),
+    "contact_pairs": (np.int32, (2,)),
+    "contact_normal_force": (float, ()),
+    "contact_neck": (float, ()),
+    "plane_axis": (np.int32, ()),
+    "plane_position": (float, ()),
+    "plane_contacts": (np.int32, (2,)),
+    "plane_contact_normal_force": (float, ()),
+    "cell_size": (float, ()),
+}
+
+
+def snapshot():
+    """Everything about the grains and their contacts at one moment.
+
+    Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
+    has moved the grains on by then; the arrays are brought to the moment of the forces, which is also that of O.energy.
+
+    Returns
+    -------
+    dict
+        In SI units. `time` [s]. Of the N grains, in the order of body ids: `ids` (N,), `position` (N, 3) (unwrapped in a periodic cell),
+        `velocity` (N, 3), `angular_velocity` (N, 3), `radius` (N,) (of sintered grains that before they shrank). Of the M contacts (a
+        periodic cell's are of the nearest images): `contact_pairs` (M, 2) (row numbers), `contact_normal_force` (M,) (elastic and
+        viscous, positive when repulsive), `contact_neck` (M,) (the neck's radius over that of the grains; 0: no bond),
+        `contact_bonded` (M,) bool. With planes (Walls), in the order of body ids: `plane_axis` (P,) (0, 1, 2), `plane_position` (P,)
+        along that axis, `plane_contacts` (K, 2) (row of the grain, row of the plane), `plane_contact_normal_force` (K,).
+        In a periodic scene: `cell_size` (3,).
+
+    Raises
+    ------
+    RuntimeError
+        While O.run() is under way (but for PyRunners), and when JKRWadaEngine's grains are not the scene's bodies any more.
+    """
+    from yade.wrapper import JKRWadaSnapshot
+
+    raw = JKRWadaSnapshot().read()
+    arrays = {
+        name: np.frombuffer(raw[name], dtype=kind).reshape(-1, *shape)
+        for name, (kind, shape) in ROWS.items()
+        if name in raw
+    }
+    return {"time": raw["time"], **arrays, "contact_bonded": arrays["contact_neck"] > 0}
+
+
+def sinter(neck):
+    """Make every contact of the running scene a sintered bond (Sirono & Ueno 2017), whoever moves the grains.
+
+    Bonds are without strain where the grains are now; with the functors from the next O.step on. Existing bonds keep their own neck.
+    All grains shrink by the volume of two of the largest necks, as ordinary contacts see them. What the contacts held is booked as
+    disconnection (MODEL.md, "Sintering a running scene").
+
+    Parameters
+    ----------
+    neck : float
+        The necks' radius over that of the grains (unlike grains: over 2 r1 r2/(r1 + r2)), up to 0.7.
+
+    Raises
+    ------
+    ValueError, RuntimeError
+        For a neck out of range, a time step too long for the bonds, a scene without the contact law, and while O.run() is under way
+        (but for PyRunners).
+    """
+    from yade.wrapper import Ip2_JKRMat_JKRMat_JKRWadaPhys, JKRWadaEngine, Omega
+
+    for engine in Omega().engines:
+        if engine.dead:
+            continue
+        if isinstance(engine, JKRWadaEngine):
+            return engine.sinter(neck)
+        dispatcher = getattr(engine, "physDispatcher", None)
+        for functor in dispatcher.functors if dispatcher else ():
+            if isinstance(functor, Ip2_JKRMat_JKRMat_JKRWadaPhys):
+                return functor.sinter(neck)
+    raise RuntimeError("sinter(): O.engines must have a JKRWadaEngine, or an InteractionLoop with this contact law")
+
+
+# ---- YADE's own calls ----
+
+# Of yade.utils: they read O.interactions or O.forces, which the fused engine leaves empty.
+OF_CONTACTS = """
+    avgNumInteractions bodyNumInteractionsHistogram bodyStressTensors fabricTensor forcesOnCoordPlane forcesOnPlane getBodyIdsContacts
+    getStress getStressAndTangent getStressProfile getStressProfile_contact interactionAnglesHistogram intrsOfEachBody maxOverlapRatio
+    normalShearStressTensors numIntrsOfEachBody plotDirections plotNumInteractionsHistogram stressTensorOfPeriodicCell sumForces
+    sumTorques totalForceInVolume unbalancedForce
+""".split()
+
+
+def show_contacts(yade, main):
+    """yade.utils' functions of contacts have them with the fused engine too; main: the namespace of YADE's scripts."""
+
+    def writing_first(function):
+        @functools.wraps(function, assigned=("__doc__", "__name__"))
+        def call(*arguments, **named):
+            for engine in yade.O.engines:
+                if isinstance(engine, yade.wrapper.JKRWadaEngine) and not engine.dead:
+                    engine.writeInteractions()
+            return function(*arguments, **named)
+
+        return call
+
+    for name in OF_CONTACTS:
+        function = getattr(yade.utils, name, None)
+        if function is None:
+            continue
+        replacement = writing_first(function)
+        for namespace in (vars(yade.utils), vars(yade._utils), main):
+            if namespace.get(name) is function:
+                namespace[name] = replacement
+
+
+def give_way(yade):
+    """O.engines = ... leaves no contact behind: an engine that goes gives them to those that come."""
+    engines = yade.wrapper.Omega.engines
+
+    def replace(omega, others):
+        movers = [engine for engine in engines.fget(omega) if isinstance(engine, yade.wrapper.JKRWadaEngine)]
+        if movers and omega.running and threading.current_thread() is threading.main_thread():
+            raise RuntimeError(
+                "O.engines is set while O.run() is under way: set it after O.pause() or O.wait(), or from a PyRunner"
+            )
+        engines.fset(omega, others)
+        for engine in movers:
+            engine.giveWay()
+
+    yade.wrapper.Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
+
+
+def restore_forces(yade):
+    """O.load and the like bring permanent forces back, which YADE does not save and the engine does."""
+
+    def restoring(load):
+        @functools.wraps(load, assigned=("__doc__", "__name__"))
+        def call(omega, *arguments, **named):
+            load(omega, *arguments, **named)
+            for engine in omega.engines:
+                if isinstance(engine, yade.wrapper.JKRWadaEngine):
+                    engine.restoreForces()
+
+        return call
+
+    for name in ("load", "loadTmp", "reload"):
+        setattr(yade.wrapper.Omega, name, restoring(getattr(yade.wrapper.Omega, name)))
