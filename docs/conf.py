@@ -30,7 +30,7 @@ include_patterns = [
     "analysis/atlas/adapters/*.md",
     "contact_law/engine/*.md",
 ]
-include_patterns += ["tests/conformance/*.md", "tests/conformance/on_dem/*.md"]
+include_patterns += ["tests/conformance/*.md"]
 exclude_patterns = ["build", "runs", ".pytest_cache", "analysis/gallery/*/details.md"]
 myst_heading_anchors = 3
 html_theme = "furo"

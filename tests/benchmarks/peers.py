@@ -35,7 +35,7 @@ PARALLEL = {"lammps-newest": [str(NEWEST / "bin/mpiexec")]}  # others:
 OPEN_MPI = ["mpirun", "--oversubscribe", "--bind-to", "none"]
 PHYSICS = {
     "lammps": "JKR, springs of sliding, rolling and twisting; contacts break at the largest pull; no drag, no energies",
-    "lammps-newest": "as LAMMPS",
+    "lammps-newest": "as the other LAMMPS",
     "liggghts": "Hertz with sjkr2 (a pull that goes with the contact area, no neck); no twisting, drag or energies",
 }
 

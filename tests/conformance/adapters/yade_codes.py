@@ -7,14 +7,22 @@ HERE = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [HERE, os.path.dirname(os.path.dirname(os.path.dirname(HERE)))]
 import numpy as np
 from answers import NotModelled, main
-from reference_law_adapter import CHANNELS, material
 from yade import config, utils
 from yade.wrapper import *
 
 import contact_law
 
+CHANNELS = {"connection": "connection", "disconnection": "disconnection", "bond breaking": "bondBreaking"}
+ATTRIBUTES = {"surface_energy": "surfaceEnergy", "critical_rolling": "criticalRolling"}
+ATTRIBUTES["viscoelastic_time"] = "viscoelasticTime"
 LEDGER = [name for name, kind in contact_law.channels if kind != "work"]
 CODES = {"functors": "functors in YADE's loop", "engine": "JKRWadaEngine", "stock": "YADE's CohFrictPhys with moments"}
+
+
+def own_material(given, c):
+    if CODE == "stock":
+        return stock_material(given, c)
+    return JKRMat(**{ATTRIBUTES.get(name, name): value for name, value in given.items()})
 
 
 def stock_material(given, c):
@@ -44,7 +52,7 @@ def engines(law):
 def place(scene, materials):
     """The scene's bodies in an empty Omega: ids of the grains."""
     O.reset()
-    own = lambda name: JKRMat(**material(materials[name])) if CODE != "stock" else stock_material(materials[name], scene["contact"])  # fmt: skip
+    own = lambda name: own_material(materials[name], scene["contact"])
     walls = [utils.wall(0, axis=0, material=own(scene["plane"]["material"]))] if "plane" in scene else []
     bodies = [utils.sphere(g["position"], g["radius"], material=own(g["material"])) for g in scene["grains"]]
     for body, g in zip(bodies, scene["grains"]):

@@ -1,23 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""JKR contacts with the springs of Wada et al. and the sintered bonds of Sirono & Ueno, in mpmath's numbers, from the papers.
+"""JKR contacts with the springs of Wada et al. and the sintered bonds of Sirono & Ueno, in mpmath's numbers, and scenes
+and questions as they stand in cases.json.
 
-A22: Arakawa, Tanaka & Kokubo 2022, ApJ 933, 144. A24: Arakawa et al. 2024, Granular Matter 26 (doi:10.1007/s10035-024-01463-x).
-K13: Kataoka et al. 2013, A&A 554, A4. S17: Sirono & Ueno 2017, ApJ 841, 36. W07: Wada et al. 2007, ApJ 661, 320.
-JKR: Johnson, Kendall & Roberts 1971, Proc. R. Soc. A 324, 301. All quantities are in SI units.
+Constants of contacts and bonds are those of analysis.theory. A22: Arakawa, Tanaka & Kokubo 2022. A24: Arakawa et al.
+2024. S17: Sirono & Ueno 2017. W07: Wada et al. 2007. JKR: Johnson, Kendall & Roberts 1971. All in SI units.
 """
 
+import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 from mpmath import asin, cos, inf, mp, mpf, pi, sin, sqrt  # noqa: F401
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
+from analysis.theory import Material, bond_constants, pair_constants
+
 mp.dps = 40
-MATERIALS = {
-    "ice": dict(young=7e9, poisson=0.25, density=1000.0, surface_energy=0.1, critical_rolling=0.8e-9),
-    "soft": dict(young=3e9, poisson=0.33, density=1300.0, surface_energy=0.05, critical_rolling=1.1e-9),
-    "viscous ice": dict(young=7e9, poisson=0.25, density=1000.0, surface_energy=0.1, critical_rolling=0.8e-9),
-}
-for name, material in MATERIALS.items():
-    material["viscoelastic_time"] = 2e-12 if name == "viscous ice" else 0.0
+ICE = dict(young=7e9, poisson=0.25, density=1000.0, surface_energy=0.1, critical_rolling=0.8e-9)
+SOFT = dict(young=3e9, poisson=0.33, density=1300.0, surface_energy=0.05, critical_rolling=1.1e-9)
+MATERIALS = {"ice": {**ICE, "viscoelastic_time": 0.0}, "soft": {**SOFT, "viscoelastic_time": 0.0}}
+MATERIALS["viscous ice"] = {**ICE, "viscoelastic_time": 2e-12}
 
 
 def exact(number):
@@ -30,32 +32,37 @@ def rounded(number, digits=15):
     return float(mp.nstr(number, digits))
 
 
-def contact(name1, r1, name2, r2, linear_damping=0):
+# ---- constants: short names here, names in the file and in analysis.theory ----
+
+CONSTANTS = dict(E="reduced_young", R="reduced_radius", m="reduced_mass", gamma="surface_energy", t0="time_unit")
+CONSTANTS.update(a0="equilibrium_contact_radius", d0="equilibrium_overlap", dc="pull_off_overlap", Fc="pull_off_force")
+CONSTANTS.update(ks="sliding_stiffness", kr="rolling_stiffness", kt="twisting_stiffness")
+CONSTANTS.update(slide="critical_sliding", roll="critical_rolling", twist="critical_twisting")
+CONSTANTS.update(drag="linear_drag", viscous="viscous_drag_per_contact_radius")
+
+
+def contact(name1="ice", r1=1e-7, name2="ice", r2=1e-7, linear_damping=0.0):
     """Constants of a contact of two grains, or (r2 = inf) of a grain on a half-space."""
-    m1, m2 = (SimpleNamespace(**{k: exact(v) for k, v in MATERIALS[name].items()}) for name in (name1, name2))
-    r1, r2, plane = exact(r1), r2 if r2 == inf else exact(r2), r2 == inf
-    c = SimpleNamespace(r1=r1, r2=r2, R=r1 if plane else r1 * r2 / (r1 + r2))
-    c.m1 = mpf(4) / 3 * pi * m1.density * r1**3
-    c.m2 = inf if plane else mpf(4) / 3 * pi * m2.density * r2**3
-    c.m = c.m1 if plane else c.m1 * c.m2 / (c.m1 + c.m2)
-    shear1, shear2 = (m.young / (2 * (1 + m.poisson)) for m in (m1, m2))
-    c.E = 1 / sum((1 - m.poisson**2) / m.young for m in (m1, m2))
-    c.G = 1 / ((2 - m1.poisson) / shear1 + (2 - m2.poisson) / shear2)  # A22 after (18)
-    c.G_twist = 1 / (1 / shear1 + 1 / shear2)  # A22 after (23)
-    c.gamma = sqrt(m1.surface_energy * m2.surface_energy)
-    c.a0 = (9 * pi * c.gamma * c.R**2 / c.E) ** (mpf(1) / 3)  # A22 (1)
-    c.d0 = c.a0**2 / (3 * c.R)  # A22 (2)
-    c.dc = (mpf(9) / 16) ** (mpf(1) / 3) * c.d0  # A22 (3)
-    c.Fc = 3 * pi * c.gamma * c.R  # A22 (6)
-    c.kr, c.ks, c.kt = 4 * c.Fc / c.R, 8 * c.a0 * c.G, mpf(16) / 3 * c.G_twist * c.a0**3  # A22 (14), (18), (23)
-    c.slide = c.G_twist / c.G * c.a0 / (16 * pi)  # A22 (19): (2 - nu) a0/(16 pi) for like materials
-    c.roll, c.twist = (m1.critical_rolling + m2.critical_rolling) / 2, 1 / (16 * pi)  # A22 (24)
-    c.viscous = sum(m.viscoelastic_time / m.poisson**2 for m in (m1, m2)) * c.E  # A22 (7), per contact radius
-    r, m0 = 2 * c.R, 2 * c.m
-    t0 = mpf("0.95") * sqrt(m0 / (mpf(4) / 3 * pi * r**3)) * r ** (mpf(7) / 6)
-    c.t0 = t0 / (c.E ** (mpf(1) / 3) * c.gamma ** (mpf(1) / 6))  # K13 (2), with E*
-    c.drag = exact(linear_damping) * m0 / c.t0  # K13 (4)
+    materials = [Material(**MATERIALS[name]) for name in (name1, name2)]
+    found = vars(pair_constants(materials[0], r1, materials[1], float(r2), linear_damping))
+    gamma = mp.sqrt(exact(materials[0].surface_energy) * exact(materials[1].surface_energy))
+    found = {**found, "surface_energy": gamma, "viscous_drag_per_contact_radius": found["drag_per_contact_radius"]}
+    c = SimpleNamespace(**{short: mpf(found[name]) for short, name in CONSTANTS.items()})
+    c.r1, c.r2 = exact(r1), r2 if r2 == inf else exact(r2)
+    c.m1 = mpf(4) / 3 * pi * exact(materials[0].density) * c.r1**3
     return c
+
+
+def bond(name, r, beta):
+    """Constants of a bond of two like grains with radius r, neck a = beta r; with those that springs() takes."""
+    material, r = Material(**MATERIALS[name]), exact(r)
+    found = bond_constants(material, float(r), beta)
+    a, d = mpf(found.neck_radius), mpf(found.neck_length)
+    shear = exact(material.young) / (2 * (1 + exact(material.poisson)))
+    b = SimpleNamespace(r1=r, r2=r, R=r / 2, kn=mpf(found.normal_stiffness), ks=mpf(found.sliding_stiffness))
+    b.kr, b.kt = pi * a**4 * exact(material.young) / (4 * d) / b.R**2, pi * a**4 * shear / (2 * d)  # S17 (5); polar
+    b.work, b.m = mpf(found.breaking_energy), mpf(2) / 3 * pi * exact(material.density) * r**3
+    return b
 
 
 # ---- normal motion; u = (a/a0)^(1/2) ----
@@ -76,16 +83,12 @@ def force(c, u):
     return 4 * c.Fc * (u**6 - u**3)  # A22 (5)
 
 
-def force_at(c, delta):
-    return force(c, radius_root(c, delta))
-
-
 def energy(c, u):
     terms = mpf(4) / 5 * u**10 - mpf(4) / 3 * u**7 + u**4 / 3
     return c.Fc * c.dc * 4 * mpf(6) ** (mpf(1) / 3) * terms  # A22 (8)
 
 
-# ---- springs; a pair on the x axis, grain 1 at the origin, grain 2 at (distance, 0, 0) or a plane's normal ----
+# ---- springs; vectors are lists of three; n: unit vector from grain 2 to grain 1 ----
 
 
 def cross(a, b):
@@ -96,6 +99,10 @@ def dot(a, b):
     return sum(x * y for x, y in zip(a, b))
 
 
+def size(a):
+    return sqrt(dot(a, a))
+
+
 def combined(*terms):
     """Sum of factor times vector."""
     return [sum(factor * vector[k] for factor, vector in terms) for k in range(3)]
@@ -103,39 +110,125 @@ def combined(*terms):
 
 def turned(vector, angle):
     """A vector turned by a vector of an angle (Rodrigues)."""
-    size = sqrt(dot(angle, angle))
-    if size == 0:
+    if size(angle) == 0:
         return vector
-    axis = [x / size for x in angle]
+    axis = [x / size(angle) for x in angle]
     across = cross(axis, vector)
-    return combined((1, vector), (sin(size), across), (1 - cos(size), cross(axis, across)))
+    return combined((1, vector), (sin(size(angle)), across), (1 - cos(size(angle)), cross(axis, across)))
 
 
 def displacements(c, n, n1, n2):
-    """zeta and xi of contact pointers n1, n2; n: unit vector from grain 2 to grain 1. A24 (A1), (A2)."""
+    """zeta and xi of contact pointers n1, n2, and the lever z: A24 (A1), (A2)."""
     zeta0 = combined((c.r1, n1), (-c.r2, n2))
     z = dot(zeta0, n)
     return combined((1, zeta0), (-z, n)), combined((c.R, n1), (c.R, n2)), z
 
 
 def springs(c, n, distance, n1, n2, phi):
-    """Force on grain 1 and torques on both grains. A24 (A5) to (A8)."""
+    """Force on grain 1 and torques on both grains: A24 (A5) to (A8)."""
     zeta, xi, z = displacements(c, n, n1, n2)
     torque1 = combined((-c.r1 * c.ks, cross(n1, zeta)), (-c.R * c.kr, cross(n1, xi)), (-c.kt * phi, n))
     torque2 = combined((c.r2 * c.ks, cross(n2, zeta)), (-c.R * c.kr, cross(n2, xi)), (c.kt * phi, n))
     return [c.ks * z / distance * x for x in zeta], torque1, torque2
 
 
-# ---- sintered bonds ----
+# ---- ordinary differential equations: extrapolated midpoint steps (Gragg, Bulirsch & Stoer) ----
+
+COLUMNS, TOLERANCE = 16, mpf(10) ** -22  # of an extrapolation; relative to the largest change of a component in a step
 
 
-def bond(name, r, beta):
-    """Constants of a bond of two like grains with radius r, neck a = beta r; with those of a contact that springs() takes."""
-    m, r, beta = SimpleNamespace(**{k: exact(v) for k, v in MATERIALS[name].items()}), exact(r), exact(beta)
-    a, x = beta * r, beta**2 / (2 * (1 - beta))  # S17 (1), x in r
-    d, G = 2 * r * x / (1 + x), m.young / (2 * (1 + m.poisson))  # S17 (2)
-    b = SimpleNamespace(r1=r, r2=r, R=r / 2, kn=pi * a**2 * m.young / d, ks=pi * a**2 * G / d)  # S17 (3), (4)
-    b.kr, b.kt = pi * a**4 * m.young / (4 * d) / b.R**2, pi * a**4 * G / (2 * d)  # S17 (5) on xi; polar moment
-    b.work = pi * a**2 * m.surface_energy  # S17 (6)
-    b.m = mpf(2) / 3 * pi * m.density * r**3
-    return b
+def integrate(rate, start, end, y, first):
+    """y (list) at `end` of y' = rate(t, y), from `start`, by steps of `first` or shorter."""
+    t, step = start, first if end > start else -first
+    while t != end:
+        if abs(end - t) <= abs(step) * mpf("1.0000001"):
+            step = end - t
+        found = extrapolated(rate, t, y, step)
+        if found is None:
+            step /= 2
+        else:
+            t, y = (end if step == end - t else t + step), found
+    return y
+
+
+def extrapolated(rate, t, y, step):
+    rows, slope = [], rate(t, y)
+    for k in range(COLUMNS):
+        row = [midpoint(rate, t, y, step, 2 * (k + 1), slope)]
+        for j in range(k):
+            factor = (mpf(k + 1) / (k - j)) ** 2 - 1
+            row.append([a + (a - b) / factor for a, b in zip(row[j], rows[j])])
+        if k > 2:
+            scales = [max(abs(now), abs(now - then)) for now, then in zip(row[-1], y)]
+            if all(abs(a - b) <= TOLERANCE * s for a, b, s in zip(row[-1], row[-2], scales)):
+                return row[-1]
+        rows = row
+    return None
+
+
+def midpoint(rate, t, y, step, n, slope):
+    h = step / n
+    before, now = y, [a + h * b for a, b in zip(y, slope)]
+    for k in range(1, n):
+        before, now = now, [a + 2 * h * b for a, b in zip(before, rate(t + k * h, now))]
+    return [(a + b + h * c) / 2 for a, b, c in zip(before, now, rate(t + step, now))]
+
+
+# ---- scenes and questions as they stand in the file ----
+
+REST = [0.0, 0.0, 0.0]
+DIGITS = 12  # of a reference value
+
+
+def grain(material, radius, x=0.0, velocity=REST, spin=REST):
+    """A grain on the x axis."""
+    place = dict(material=material, radius=radius, position=[rounded(x), 0.0, 0.0])
+    return {**place, "velocity": list(velocity), "spin": list(spin)}
+
+
+def pair(c, delta, materials=("ice", "ice"), velocity2=REST, **more):
+    """Two grains of contact constants c with an overlap, the first at the origin, the second on the positive x axis."""
+    first, second = grain(materials[0], float(c.r1)), grain(materials[1], float(c.r2), c.r1 + c.r2 - delta, velocity2)
+    return dict(grains=[first, second], contact=constants(c), **more)
+
+
+def constants(c):
+    """Those of a contact as they stand in the file; for codes that take stiffnesses, and to be compared first."""
+    return {name: float(mp.nstr(getattr(c, short), DIGITS)) for short, name in CONSTANTS.items()}
+
+
+def along_x(v):
+    return [rounded(v), 0.0, 0.0]
+
+
+def segment(until, velocity1=REST, velocity2=REST, spin1=REST, spin2=REST):
+    """Constant velocities and spins of prescribed motion, until a time."""
+    return dict(until=until, velocity=[list(velocity1), list(velocity2)], spin=[list(spin1), list(spin2)])
+
+
+def asked(name, what, value, unit, formula, source, scale=None):
+    """A question with its reference value; scale: what an error is divided by, of values that are zero or nearly so."""
+    found = dict(name=name, unit=unit, measure=what, value=mp.nstr(value, DIGITS, strip_zeros=False))
+    if scale is not None:
+        found["scale"] = float(mp.nstr(abs(scale), 3))
+    return {**found, "formula": formula, "source": source}
+
+
+def at(time, of, scene="scene"):
+    return dict(scene=scene, kind="value", of=of, at=time)
+
+
+def when(of, passes, value=0.0, after=0.0, before=None, scene="scene"):
+    return dict(scene=scene, kind="value", of=of, when=passes, equals=rounded(value), after=after, before=before)
+
+
+def channel(of, time, scene="scene"):
+    return dict(scene=scene, kind="channel", of=of, at=time)
+
+
+def flight(distance, scene="scene"):
+    return dict(scene=scene, kind="break", distance=rounded(distance))
+
+
+def case(name, title, mechanisms, scenes, questions):
+    return dict(id=name, title=title, mechanisms=mechanisms.split(", "), scenes=scenes, asked=questions)
