@@ -29,9 +29,9 @@ from analysis.runs.files import require_output
 from analysis.version import version_text
 from yade_scripts import materials, packings
 from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
-from yade_scripts.packings.cut import CutParameters, cut, is_periodic_state, read_periodic_state
-from yade_scripts.packings.describe import description
+from yade_scripts.packings.from_run import CutParameters, cut, holds, read_periodic_state
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
+from yade_scripts.packings.packing import description
 from yade_scripts.parameters import ParameterError, one_of, parameter, unknown
 from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.arguments import from_arguments
@@ -62,7 +62,7 @@ def _save(file, packing):
 
 def _save_from(source, files, texts):
     """Save what is cut out of the state of a compression, or the aggregate of another program."""
-    if is_periodic_state(source):
+    if holds(source, "cell_size"):
         state, parameters = read_periodic_state(source), CutParameters.parse(texts)
         for index, file in enumerate(files):
             _save(file, cut(state, parameters, index))

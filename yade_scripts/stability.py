@@ -7,7 +7,7 @@ pairConstants or materials.pair_constants give them, with the constants of a bon
 import math
 
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings.filling import maximum_filling
+from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"

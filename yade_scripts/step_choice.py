@@ -41,7 +41,7 @@ Drag leaves somewhat smaller errors and is left out, but where it limits the ste
 
 import math
 
-from yade_scripts.packings.grain_sizes import EQUAL
+from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.parameters import ParameterError
 from yade_scripts.stability import AUTO, bond_step
 

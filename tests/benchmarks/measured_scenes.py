@@ -14,8 +14,7 @@ from analysis.measures.periodic_cell import filling_factor
 from yade_scripts import packings
 from yade_scripts.experiments import collision, compression
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings.approach import first_touch
-from yade_scripts.packings.periodic import smallest_edge
+from yade_scripts.packings.placing import first_touch, smallest_edge
 
 BESIDE_LAMMPS = ("engine", "lammps")
 IN_YADE = ("engine", "engine-avx2", "engine-portable", "functors", "stock")

@@ -8,22 +8,28 @@ from scipy.stats import kstest
 
 from yade_scripts import packings
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings import grain_sizes
+from yade_scripts.packings import aggregate
+from yade_scripts.packings.aggregate import AggregateParameters
+from yade_scripts.packings.packing import touching_distance
 
-UNLIKE = {"two": dict(sizes="two", ratio=2.5, fraction=0.3), "lognormal": dict(sizes="lognormal", spread=0.4)}
+UNLIKE = {
+    "two": dict(sizes="two", sizeRatio=2.5, sizeFraction=0.3),
+    "lognormal": dict(sizes="lognormal", sizeSpread=0.4),
+}
 
 
-def unlike_radii(name, grains):
-    options = dict(UNLIKE[name])
-    return grain_sizes.radii(options.pop("sizes"), grains, RADIUS, np.random.default_rng(1), **options)
+def unlike(name, grains):
+    """(parameters, radii (grains,)) of grains of unlike size."""
+    parameters = AggregateParameters.parse(dict(UNLIKE[name], packing="bpca", grains=grains))
+    return parameters, aggregate.radii(parameters, 0)
 
 
 def distances_over_rest(packing):
-    """(pairs (M,2), distance over that at which the two rest against each other (M,)) of the pairs nearer than the largest diameter."""
+    """(pairs (M, 2), distance over that at rest (M,)) of the pairs nearer than the largest diameter."""
     radius = packing.radius
     pairs = cKDTree(packing.position).query_pairs(2 * radius.max(), output_type="ndarray")
     distance = np.linalg.norm(packing.position[pairs[:, 0]] - packing.position[pairs[:, 1]], axis=1)
-    rest = grain_sizes.touching_distance(radius[pairs[:, 0]], radius[pairs[:, 1]], RADIUS, OVERLAP)
+    rest = touching_distance(radius[pairs[:, 0]], radius[pairs[:, 1]], RADIUS, OVERLAP)
     return pairs, distance / rest
 
 
@@ -49,7 +55,7 @@ def test_every_grain_rests_against_one_that_came_before(grains, seed):
 @pytest.mark.parametrize("make_one", [packings.bpca, packings.bcca], ids=["bpca", "bcca"])
 def test_grains_of_unlike_size(name, make_one):
     grains = 1000
-    radii = unlike_radii(name, grains)
+    radii = unlike(name, grains)[1]
     packing = make_one(grains, RADIUS, OVERLAP, 4, radii=radii)
     assert np.array_equal(packing.radius, radii)
     pairs, relative = distances_over_rest(packing)
@@ -65,25 +71,24 @@ def test_single_pairs_by_hand():
     """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
     for first, second in ((1e-7, 1e-7), (1e-7, 3e-7), (0.5e-7, 4e-7)):
         expected = first + second - pair_constants(ICE, (first, second))["equilibriumOverlap"]
-        assert grain_sizes.touching_distance(first, second, RADIUS, OVERLAP) == pytest.approx(expected, rel=1e-13)
+        assert touching_distance(first, second, RADIUS, OVERLAP) == pytest.approx(expected, rel=1e-13)
     pair = packings.bpca(2, RADIUS, OVERLAP, 1)
     assert packings.gyration_radius(pair) == pytest.approx((2 * RADIUS - OVERLAP) / 2, rel=1e-12)
     assert packings.characteristic_radius(pair) == pytest.approx((5 / 3) ** 0.5 * (2 * RADIUS - OVERLAP) / 2, rel=1e-12)
-    unlike = packings.bpca(2, RADIUS, OVERLAP, 1, radii=[RADIUS, 2 * RADIUS])
-    distance = grain_sizes.touching_distance(RADIUS, 2 * RADIUS, RADIUS, OVERLAP)
-    assert packings.gyration_radius(unlike) == pytest.approx(distance * 8**0.5 / 9, rel=1e-12)
+    pair = packings.bpca(2, RADIUS, OVERLAP, 1, radii=[RADIUS, 2 * RADIUS])
+    distance = touching_distance(RADIUS, 2 * RADIUS, RADIUS, OVERLAP)
+    assert packings.gyration_radius(pair) == pytest.approx(distance * 8**0.5 / 9, rel=1e-12)
 
 
-def test_radii_that_were_asked_for():
-    two = unlike_radii("two", 1000)
+def test_sizes_of_grains_are_distributed_as_their_parameters_say():
+    two = unlike("two", 1000)[1]
     assert np.count_nonzero(two == 2.5 * RADIUS) == 300 and np.count_nonzero(two == RADIUS) == 700
-    logarithm = np.log(unlike_radii("lognormal", 20000) / RADIUS)
-    assert np.abs(logarithm).max() <= 0.4 * grain_sizes.WIDEST
+    logarithm = np.log(unlike("lognormal", 20000)[1] / RADIUS)
+    assert np.abs(logarithm).max() <= 0.4 * aggregate.WIDEST
     # the standard deviation of a normal distribution cut off at 2.5 of it is 0.9545 of it
     assert logarithm.std() == pytest.approx(0.4 * 0.9545, rel=0.02) and abs(logarithm.mean()) < 4 * 0.4 / 20000**0.5
-    for name, options in UNLIKE.items():
-        low, high = grain_sizes.radius_range(options["sizes"], RADIUS, options.get("ratio"), options.get("spread"))
-        drawn = unlike_radii(name, 5000)
+    for parameters, drawn in (unlike(name, 5000) for name in UNLIKE):
+        low, high = parameters.radius_range()
         assert low <= drawn.min() and drawn.max() <= high
 
 
@@ -111,7 +116,7 @@ def test_isotropy():
 
 
 def test_contacts_at_the_start_beyond_those_that_rest():
-    """What docs/aggregates.md says of the start: about 0.5 % more contacts than grains, nearer than 2 r but not resting."""
+    """About 0.5 % more contacts than grains: nearer than 2 r, but not at rest."""
     packing = packings.bpca(20000, RADIUS, OVERLAP, 2)
     more = len(packings.contacts(packing)) - (packing.grains - 1)
     assert 0.004 < more / packing.grains < 0.0065

@@ -6,8 +6,7 @@ from of_ice import OVERLAP, RADIUS
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import CollisionParameters, place
-from yade_scripts.packings.approach import first_touch
-from yade_scripts.packings.offset_pair import START_GAP, offset_pair
+from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 
 
 def centre(packing):
@@ -19,20 +18,20 @@ def centre(packing):
 @pytest.mark.parametrize("grains", [(120, 120), (200, 40)])
 def test_offset_is_that_of_the_characteristic_radii(kind, impact, grains):
     pair = [kind(number, RADIUS, OVERLAP, 5, index) for index, number in enumerate(grains)]
-    target, projectile = offset_pair(*pair, 30.0, impact)
-    apart = centre(projectile.packing) - centre(target.packing)
+    (target, projectile), (of_target, of_projectile) = offset_pair(*pair, 30.0, impact)
+    apart = centre(projectile) - centre(target)
     expected = impact * sum(map(packings.characteristic_radius, pair))
     assert apart[1] == pytest.approx(expected, rel=1e-9, abs=1e-18) and abs(apart[2]) < 1e-18 and apart[0] > 0
-    assert projectile.velocity - target.velocity == pytest.approx([-30.0, 0, 0])
+    assert of_projectile - of_target == pytest.approx([-30.0, 0, 0])
     mass = [(packing.radius**3).sum() for packing in pair]
-    momentum = mass[0] * target.velocity + mass[1] * projectile.velocity
+    momentum = mass[0] * of_target + mass[1] * of_projectile
     assert np.abs(momentum).max() < 1e-12 * 30 * sum(mass)
-    both = mass[0] * centre(target.packing) + mass[1] * centre(projectile.packing)
+    both = mass[0] * centre(target) + mass[1] * centre(projectile)
     assert np.abs(both).max() / sum(mass) < 1e-9 * RADIUS
-    touch = first_touch(target.packing, projectile.packing, projectile.velocity - target.velocity)
+    touch = first_touch(target, projectile, of_projectile - of_target)
     if touch is not None:
         assert touch * 30.0 == pytest.approx(START_GAP * RADIUS, rel=1e-6)
-    packings.require_apart(target.packing, projectile.packing)
+    packings.require_apart(target, projectile)
 
 
 def spheres(*centres):
@@ -45,13 +44,13 @@ def test_graze_and_miss_of_two_pairs(fraction, meets):
     pair = spheres([0, 0, RADIUS], [0, 0, -RADIUS])
     reach = 2 * packings.characteristic_radius(pair)
     assert reach == pytest.approx(2 * (5 / 3) ** 0.5 * RADIUS)
-    target, projectile = offset_pair(pair, pair, 10.0, fraction * 2 * RADIUS / reach)
-    touch = first_touch(target.packing, projectile.packing, projectile.velocity - target.velocity)
+    (target, projectile), (of_target, of_projectile) = offset_pair(pair, pair, 10.0, fraction * 2 * RADIUS / reach)
+    touch = first_touch(target, projectile, of_projectile - of_target)
     assert (touch is not None) is meets
     if meets:
         assert touch == pytest.approx(START_GAP * RADIUS / 10.0)
     else:  # they start where the spheres around them touch in x
-        apart = centre(projectile.packing) - centre(target.packing)
+        apart = centre(projectile) - centre(target)
         assert apart[0] == pytest.approx(4 * RADIUS)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
-from yade_scripts.packings.cut import PeriodicState
+from yade_scripts.packings.from_run import PeriodicState
 from yade_scripts.packings.packing import PackingError
 from yade_scripts.studies import compressed
 

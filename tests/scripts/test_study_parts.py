@@ -10,8 +10,8 @@ from running import Terminal
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, default_duration, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
-from yade_scripts.packings.approach import first_touch
-from yade_scripts.packings.from_file import sum_of_file
+from yade_scripts.packings.files import sum_of_file
+from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import agreement, table
 from yade_scripts.run.arguments import gather
 from yade_scripts.run.closing_line import closing_line, outcome_told

@@ -22,12 +22,10 @@ from yade_scripts.experiments.collision_step import (
 )
 from yade_scripts.experiments.plate import AGGREGATE, WALL
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings.aggregate import MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
-from yade_scripts.packings.approach import first_touch
-from yade_scripts.packings.from_file import sum_of_file
-from yade_scripts.packings.grain_sizes import EQUAL
-from yade_scripts.packings.offset_pair import START_GAP, offset_pair
+from yade_scripts.packings.aggregate import EQUAL, MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
+from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.packing import PackingError
+from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
@@ -216,10 +214,9 @@ def place(parameters, overlap):
         packings.require_apart(*pair)
         return parameters, pair, [velocity for _, velocity in where]
     parameters = _with_size(parameters, pair)
-    placed = offset_pair(*pair, parameters.velocity, parameters.impact)
-    pair = [found.packing for found in placed]
+    pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
     packings.require_apart(*pair)
-    return parameters, pair, [found.velocity for found in placed]
+    return parameters, pair, velocities
 
 
 def _with_size(parameters, pair):

@@ -5,7 +5,7 @@ import numpy as np
 from yade_scripts import stability, step_choice
 from yade_scripts.experiments import plate
 from yade_scripts.materials import pair_constants, require_small_contacts
-from yade_scripts.packings.grain_sizes import EQUAL
+from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.parameters import ParameterError
 from yade_scripts.stability import AUTO
 

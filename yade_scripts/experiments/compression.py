@@ -23,7 +23,7 @@ from yade_scripts.experiments.compression_end import (
 )
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
-from yade_scripts.packings.periodic import require_apart_from_images, smallest_edge
+from yade_scripts.packings.placing import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters

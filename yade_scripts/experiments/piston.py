@@ -6,7 +6,7 @@ across the plates. The filling factor is that between the plates, the pressure t
 import numpy as np
 
 from analysis.measures.periodic_cell import filling_factor
-from yade_scripts.packings.rbd import rbd, square_for
+from yade_scripts.packings.ballistic import rbd, square_for
 
 DEPOSITED = 0.15  # filling of a deep layer, which sets the square on which it is grown
 GAP = 0.1  # grain radii between the highest grain and the upper plate at the start

@@ -3,7 +3,7 @@
 import numpy as np
 
 from yade_scripts import packings
-from yade_scripts.packings.offset_pair import START_GAP
+from yade_scripts.packings.placing import START_GAP
 from yade_scripts.parameters import ParameterError
 
 AGGREGATE, WALL = "aggregate", "wall"  # targets

@@ -1,27 +1,32 @@
-"""The aggregate that a run's parameters ask for."""
+"""The aggregate that a run's parameters describe."""
 
-import math
 from dataclasses import dataclass, replace
+from math import exp
+
+import numpy as np
 
 from yade_scripts.materials import GrainParameters
-from yade_scripts.packings import grain_sizes
-from yade_scripts.packings.bcca import bcca
-from yade_scripts.packings.bpca import bpca
-from yade_scripts.packings.cut import OF_CONTACTS
-from yade_scripts.packings.filling import grain_number
-from yade_scripts.packings.from_file import packing_from_file
-from yade_scripts.packings.grain_sizes import EQUAL, LOGNORMAL, SIZES, TWO
-from yade_scripts.packings.largest_piece import largest_piece
-from yade_scripts.packings.lattice import cpe
-from yade_scripts.packings.packing import random_stream
+from yade_scripts.packings.ballistic import bcca, bpca
+from yade_scripts.packings.files import OF_CONTACTS, packing_from_file
+from yade_scripts.packings.lattice import cpe, grain_number
+from yade_scripts.packings.packing import largest_piece, random_stream
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000
 MOST_GROWN = {"bcca": 100_000, "bpca": 2_000_000}  # made in a minute, in minutes
 GRAINS_GROWN = 1024
 MADE = ("cpe", *MOST_GROWN)
-OF_CPE = ("removeLooseGrains", "initialOverlap")
+EQUAL, TWO, LOGNORMAL = SIZES = ("equal", "two", "lognormal")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
+WIDEST = 2.5  # standard deviations of ln r at which a log-normal distribution is cut off on both sides
+# {parameter: ways of packing that it has an effect on}
+ONLY_WITH = {
+    **dict.fromkeys(("filling", "radius", "removeLooseGrains", "initialOverlap"), ("cpe",)),
+    **dict.fromkeys(("grains", "seed"), MADE),
+    "file": ("file",),
+    "planar": ("cpe", "bcca", "file"),
+    "sizes": tuple(MOST_GROWN),
+}
 
 
 @dataclass(frozen=True)
@@ -36,8 +41,9 @@ class AggregateParameters(GrainParameters):
     filling: float | None = parameter(
         None,
         Check("> 0 and at most what the lattice holds", lambda x: x > 0),
-        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4); of others the sum of (r/R)^3 or (r/R)^2 is found, "
-        "with R from the centre to that of the farthest grain; largest_filling_factor of tables has R = (5/3)^(1/2) R_g",
+        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4); of others the sum of (r/R)^3 or "
+        "(r/R)^2 is found, with R from the centre to that of the farthest grain; largest_filling_factor of tables has "
+        "R = (5/3)^(1/2) R_g",
         "1",
     )
     radius: float | None = parameter(
@@ -64,8 +70,7 @@ class AggregateParameters(GrainParameters):
     sizeSpread: float | None = parameter(
         None,
         Check("> 0 and at most 0.7", lambda x: 0 < x <= 0.7),
-        "sizes = lognormal: standard deviation of ln r around ln grainRadius, "
-        f"cut off at {grain_sizes.WIDEST:g} of it",
+        "sizes = lognormal: standard deviation of ln r around ln grainRadius, " f"cut off at {WIDEST:g} of it",
         "1",
     )
     removeLooseGrains: int = parameter(
@@ -84,12 +89,15 @@ class AggregateParameters(GrainParameters):
 
     def filled_in(self):
         """What follows from the way of packing: radius from grains or grains from radius and filling (cpe)."""
-        if self.packing != "file" and self.file is not None:
-            raise ParameterError(f"file = {self.file}: given with packing = {self.packing}; must be left out")
-        if self.packing != "cpe":
-            self._refuse(*OF_CPE)
-        sized = {"cpe": self._of_cpe, "file": self._of_file}.get(self.packing, self._grown)()
-        return super(AggregateParameters, sized._with_sizes()).filled_in()
+        self._require_of_packing()
+        if self.packing == "cpe":
+            found = self._of_cpe()
+        elif self.packing == "file":
+            found = self
+        else:
+            found = self.changed(grains=GRAINS_GROWN if self.grains is None else self.grains)
+            require_growable(self.packing, "grains", found.grains)
+        return super(AggregateParameters, found._with_sizes()).filled_in()
 
     @property
     def is_grown(self):
@@ -98,50 +106,31 @@ class AggregateParameters(GrainParameters):
 
     def radius_range(self):
         """(smallest, largest) radius [m] that a grain of these sizes may have."""
-        return grain_sizes.radius_range(self.sizes, self.grainRadius, self.sizeRatio, self.sizeSpread)
+        if self.sizes == TWO:
+            return self.grainRadius * min(1.0, self.sizeRatio), self.grainRadius * max(1.0, self.sizeRatio)
+        width = exp(WIDEST * self.sizeSpread) if self.sizes == LOGNORMAL else 1.0
+        return self.grainRadius / width, self.grainRadius * width
+
+    def _require_of_packing(self):
+        """What another way of packing alone has must be left out."""
+        if self.packing == "file" and self.file is None:
+            raise ParameterError("file: not given with packing = file; must be a packing that make_packing.py wrote")
+        for name, packings in ONLY_WITH.items():
+            value = getattr(self, name)
+            if value != self.columns()[name].default and self.packing not in packings:
+                text = value if isinstance(value, str) else f"{value:g}"
+                raise ParameterError(f"{name} = {text}: given with packing = {self.packing}; must be left out")
 
     def _with_sizes(self):
-        if self.sizes != EQUAL and not self.is_grown:
-            raise ParameterError(f"sizes = {self.sizes}: given with packing = {self.packing}; must be {EQUAL}")
         for name, of in OF_SIZES.items():
             if self.sizes != of and getattr(self, name) is not None:
                 raise ParameterError(
                     f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out"
                 )
-        if self.sizes == TWO and self.sizeFraction is None:
-            return self._required("sizeRatio").changed(sizeFraction=0.5)
-        return self._required({TWO: "sizeRatio", LOGNORMAL: "sizeSpread"}.get(self.sizes))
-
-    def _required(self, name):
-        if name is not None and getattr(self, name) is None:
-            raise ParameterError(f"{name}: not given with sizes = {self.sizes}; {self.columns()[name].must}")
-        return self
-
-    def _refuse(self, *names):
-        for name in names:
-            value = getattr(self, name)
-            if value != self.columns()[name].default:
-                raise ParameterError(
-                    f"{name} = {value:g}: given with packing = {self.packing}, on which it has no effect; must be left out"
-                )
-
-    def _grown(self):
-        for name in ("filling", "radius"):
-            if getattr(self, name) is not None:
-                raise ParameterError(
-                    f"{name} = {getattr(self, name):g}: given with packing = {self.packing}; must be grains only"
-                )
-        if self.packing == "bpca" and self.planar:
-            raise ParameterError("planar = 1: given with packing = bpca, which is made in space; must be 0")
-        grains = GRAINS_GROWN if self.grains is None else self.grains
-        require_growable(self.packing, "grains", grains)
-        return self.changed(grains=grains)
-
-    def _of_file(self):
-        if self.file is None:
-            raise ParameterError("file: not given with packing = file; must be a packing that make_packing.py wrote")
-        self._refuse("filling", "radius", "grains", "seed")
-        return self
+        needed = {TWO: "sizeRatio", LOGNORMAL: "sizeSpread"}.get(self.sizes)
+        if needed and getattr(self, needed) is None:
+            raise ParameterError(f"{needed}: not given with sizes = {self.sizes}; {self.columns()[needed].must}")
+        return self.changed(sizeFraction=0.5) if self.sizes == TWO and self.sizeFraction is None else self
 
     def _of_cpe(self):
         dimensions = 2 if self.planar else 3
@@ -151,14 +140,11 @@ class AggregateParameters(GrainParameters):
                 raise ParameterError("radius and grains: both given; must be one of the two, beside filling")
             return self.changed(filling=filling, radius=(self.grains / filling) ** (1 / dimensions))
         radius = 20.0 if self.radius is None else self.radius
-        try:
-            grains = grain_number(filling, radius, bool(self.planar))
-        except OverflowError:
-            grains = math.inf
+        at_least, at_most = ((n / filling) ** (1 / dimensions) for n in (2, MOST_GRAINS))
+        grains = grain_number(filling, min(radius, 2 * at_most), bool(self.planar))
         if not 2 <= grains <= MOST_GRAINS:
-            at_least, at_most = ((n / filling) ** (1 / dimensions) for n in (2, MOST_GRAINS))
             raise ParameterError(
-                f"radius = {radius:g}: {grains:g} grains at filling {filling:g}; must be about {at_least:.3g} to "
+                f"radius = {radius:g}: too small or large at filling {filling:g}; must be about {at_least:.3g} to "
                 f"{at_most:.3g} [grain radii], for 2 to {MOST_GRAINS} grains"
             )
         return self.changed(filling=filling, radius=radius, grains=grains)
@@ -173,35 +159,55 @@ def require_growable(packing, name, grains):
 def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin.
 
-    parameters: AggregateParameters; overlap: of touching grains of grainRadius [m]. What is made says of which material,
-    so that a run of other grains does not start with contacts out of rest (from_file.py), and how unlike its grains are. Raises
-    PackingError.
+    Parameters
+    ----------
+    parameters : AggregateParameters
+    overlap : float
+        Of touching grains of grainRadius [m].
+    index : int
+
+    Returns
+    -------
+    Packing
+        Its parameters say of which material it is, so that a run of other grains does not start with contacts out of
+        rest, and how unlike its grains are.
+
+    Raises
+    ------
+    PackingError
     """
-    if parameters.packing == "file":
-        return packing_from_file(parameters.file, parameters.grainRadius, overlap, bool(parameters.planar), parameters)
-    packing = _made(parameters, overlap, index)
-    told = OF_CONTACTS if parameters.sizes == EQUAL else (*OF_CONTACTS, "sizes", *OF_SIZES)
-    about = {name: getattr(parameters, name) for name in told if getattr(parameters, name) is not None}
+    p, planar = parameters, bool(parameters.planar)
+    if p.packing == "file":
+        return packing_from_file(p.file, p.grainRadius, overlap, planar, p)
+    if p.packing == "cpe":
+        apart = overlap * p.initialOverlap
+        packing = cpe(p.filling, p.radius * p.grainRadius, p.grainRadius, apart, p.seed, index, planar)
+        packing = largest_piece(packing) if p.removeLooseGrains else packing
+    elif p.packing == "bpca":
+        packing = bpca(p.grains, p.grainRadius, overlap, p.seed, index, radii(p, index))
+    else:
+        packing = bcca(p.grains, p.grainRadius, overlap, p.seed, index, planar, radii(p, index))
+    names = OF_CONTACTS if p.sizes == EQUAL else (*OF_CONTACTS, "sizes", *OF_SIZES)
+    about = {name: getattr(p, name) for name in names if getattr(p, name) is not None}
     return replace(packing, parameters={**packing.parameters, **about})
 
 
-def _made(parameters, overlap, index):
-    radius, seed, planar = parameters.grainRadius, parameters.seed, bool(parameters.planar)
-    if parameters.packing == "cpe":
-        overlap *= parameters.initialOverlap
-        packing = cpe(parameters.filling, parameters.radius * radius, radius, overlap, seed, index, planar)
-        return largest_piece(packing) if parameters.removeLooseGrains else packing
-    radii = _radii(parameters, index)
-    if parameters.packing == "bpca":
-        return bpca(parameters.grains, radius, overlap, seed, index, radii)
-    return bcca(parameters.grains, radius, overlap, seed, index, planar, radii)
-
-
-def _radii(parameters, index):
-    """Radii [m] of a grown aggregate, from a stream of their own: with equal grains the packing stays the same."""
+def radii(parameters, index):
+    """Radii (grains,) [m] of a grown aggregate in random order, from a stream of their own: with equal grains the packing
+    stays the same."""
     p, stream = parameters, random_stream(parameters.seed, index, 1)
-    if p.sizes == TWO and 0 < p.sizeFraction < 1 and round(p.sizeFraction * p.grains) in (0, p.grains):
+    if p.sizes == LOGNORMAL:
+        deviations = stream.normal(size=p.grains)
+        while (outside := np.abs(deviations) > WIDEST).any():
+            deviations[outside] = stream.normal(size=np.count_nonzero(outside))
+        return p.grainRadius * np.exp(p.sizeSpread * deviations)
+    found = np.full(p.grains, float(p.grainRadius))
+    if p.sizes == EQUAL:
+        return found
+    others = round(p.sizeFraction * p.grains)
+    if 0 < p.sizeFraction < 1 and others in (0, p.grains):
         raise ParameterError(
             f"sizeFraction = {p.sizeFraction:g}: of {p.grains} grains none, or all; must be 0, 1, or such that some are"
         )
-    return grain_sizes.radii(p.sizes, p.grains, p.grainRadius, stream, p.sizeRatio, p.sizeFraction, p.sizeSpread)
+    found[:others] *= p.sizeRatio
+    return stream.permutation(found)

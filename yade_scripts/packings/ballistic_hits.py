@@ -21,7 +21,7 @@ def add_grain(number, position, head, following, low, width):
 
 @njit(cache=True)
 def _touching(first, second, overlap):
-    # grain_sizes.touching_distance in units of the grain radius
+    # packing.touching_distance in units of the grain radius
     return first + second - overlap * np.cbrt(2.0 * first * second / (first + second))
 
 

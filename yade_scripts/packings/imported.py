@@ -8,37 +8,32 @@ between them is within what the digits hide; then rest.py moves all of them as l
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components, minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
-from analysis.runs.files import RunFolderError
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.aggregate import MOST_GRAINS
-from yade_scripts.packings.cut import OF_CONTACTS, holds, record_of_state
-from yade_scripts.packings.foreign import IN_A_METRE, read_spheres
-from yade_scripts.packings.from_file import DEEPEST
-from yade_scripts.packings.largest_piece import largest_piece
+from yade_scripts.packings.files import DEEPEST, OF_CONTACTS, is_packing, load
+from yade_scripts.packings.from_run import NO_RUN, holds, record_of_state
 from yade_scripts.packings.packing import (
     Packing,
     PackingError,
     centred,
     contacts,
-    is_packing,
-    load,
+    equilibrium_overlaps,
+    largest_piece,
     surface_gaps,
     touching,
 )
-from yade_scripts.packings.rest import at_rest, equilibrium_overlaps
+from yade_scripts.packings.rest import at_rest
+from yade_scripts.packings.spheres import IN_A_METRE, read_spheres
 from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
 
 OF_RADIUS = "radius"
 PLAUSIBLE = (1e-9, 1e-3)  # m: radii of grains
 SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
 DEEPEST_OVERLAP = 0.1  # grain radii beyond that at rest, as under pressure; deeper ones have another radius or unit
-FARTHEST = 10.0  # grain radii up to which it is told how far pieces are apart
 LARGEST = "largest"
 
 
@@ -73,18 +68,35 @@ class ImportParameters(GrainParameters):
 
 @dataclass(frozen=True)
 class Scaled:
-    """Spheres in m: position (N,3), radius (N,), the gap up to which they touch, and the radius by which they are known."""
+    """Spheres in m."""
 
-    position: np.ndarray
-    radius: np.ndarray
-    tolerance: float
-    grain_radius: float
+    position: np.ndarray  # (N, 3)
+    radius: np.ndarray  # (N,)
+    tolerance: float  # gap up to which they touch
+    grain_radius: float  # by which they are known
 
 
 def imported(path, texts):
-    """(Packing around the origin, lines about how it came about) of a file of another program and {name: text} of
-    ImportParameters. Grains are of the material that the file says, unless one is given. Raises ParameterError and PackingError."""
-    parameters = ImportParameters.parse(texts if "material" in texts else {**_said_material(path), **texts})
+    """The aggregate of another program, its contacts at rest.
+
+    Parameters
+    ----------
+    path : str
+    texts : dict
+        {name: text} of ImportParameters. Grains are of the material that the file says, unless one is given.
+
+    Returns
+    -------
+    packing : Packing
+        Around the origin.
+    lines : list of str
+        What was read, and how far grains were moved.
+
+    Raises
+    ------
+    ParameterError, PackingError
+    """
+    parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
     scaled = _scaled(path, spheres, parameters, "grainRadius" in texts)
     parameters = parameters.changed(grainRadius=scaled.grain_radius)
@@ -93,7 +105,12 @@ def imported(path, texts):
     overlap = constants["equilibriumOverlap"]
     pairs = _meant_contacts(path, scaled, overlap)
     rest = at_rest(scaled.position, scaled.radius, pairs, scaled.grain_radius, overlap)
-    _require_rest(path, rest)
+    if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
+        first, second = rest.pairs[rest.worst]
+        raise PackingError(
+            f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
+            f"{1 + rest.deviation[rest.worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
+        )
     moved = float(np.linalg.norm(rest.position - scaled.position, axis=1).max())
     about = dict(
         packing="imported",
@@ -104,35 +121,19 @@ def imported(path, texts):
         largestMotion=moved,
     )
     packing = Packing(centred(rest.position, scaled.radius), scaled.radius, 0, about)
-    packing = _in_pieces(path, packing, parameters.pieces)
     lines = [
         f"{path}: {spheres.about}, {len(scaled.radius)} grains; those touch that are at most "
         f"{scaled.tolerance / scaled.radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
         f"brought to rest: grains moved by up to {moved / scaled.grain_radius:.2g} grain radii, contacts are within "
-        f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, {len(rest.pairs) - len(pairs)} more came about",
+        f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, "
+        f"{len(rest.pairs) - len(pairs)} more came about",
     ]
-    return packing, lines
-
-
-def _said_material(path):
-    """{name: value} of OF_CONTACTS, of a state of a run or a packing that make_packing.py wrote; {} of other programs' files."""
-    if is_packing(path):
-        said = load(path).parameters
-    elif not holds(path, "contact_pairs"):
-        return {}
-    else:
-        try:
-            said = dict(record_of_state(path)["derived"])
-        except (RunFolderError, KeyError, TypeError, ValueError) as error:
-            reason = " ".join(str(error).split())
-            raise PackingError(
-                f"{path}: a state of a run, but {reason}; must be in RUN/states, or material be given"
-            ) from None
-    return {name: said[name] for name in OF_CONTACTS if name in said}
+    return _in_pieces(path, packing, parameters.pieces), lines
 
 
 def grains_of(packing, material=None):
-    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material` (the likest one)."""
+    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`, or of the
+    material that is most like them."""
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
 
     def others(usual):
@@ -145,6 +146,23 @@ def grains_of(packing, material=None):
 
     found = material or min(materials.MATERIALS, key=lambda name: len(others(name)))
     return [f"material={found}"] * (material is not None or found != ImportParameters().material) + others(found)
+
+
+def _material_of(path):
+    """{name: value} of OF_CONTACTS that a state of a run, or a packing of make_packing.py, says; {} of other files."""
+    if is_packing(path):
+        made_of = load(path).parameters
+    elif not holds(path, "contact_pairs"):
+        return {}
+    else:
+        try:
+            made_of = dict(record_of_state(path)["derived"])
+        except NO_RUN as error:
+            reason = " ".join(str(error).split())
+            raise PackingError(
+                f"{path}: a state of a run, but {reason}; must be in RUN/states, or material be given"
+            ) from None
+    return {name: made_of[name] for name in OF_CONTACTS if name in made_of}
 
 
 def _scaled(path, spheres, parameters, grain_radius_given):
@@ -169,13 +187,8 @@ def _scaled(path, spheres, parameters, grain_radius_given):
     smallest = radius.min()
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
-    position, radius = spheres.position / in_unit, radius / in_unit
-    return Scaled(
-        np.asarray(position, dtype=float),
-        np.asarray(radius, dtype=float),
-        gap / in_unit,
-        float(np.sort(radius)[len(radius) // 2]),
-    )
+    position, radius = (np.asarray(lengths / in_unit, dtype=float) for lengths in (spheres.position, radius))
+    return Scaled(position, radius, gap / in_unit, float(np.sort(radius)[len(radius) // 2]))
 
 
 def _require_plausible(path, radius, unit):
@@ -190,7 +203,7 @@ def _require_plausible(path, radius, unit):
 
 
 def _meant_contacts(path, scaled, overlap):
-    """Pairs (M,2) of grains that are meant to touch, none of them deeper than can be meant."""
+    """Pairs (M, 2) of grains that are meant to touch, none of them deeper than can be meant."""
     position, radius = scaled.position, scaled.radius
     grains, nearest = np.arange(len(radius)), cKDTree(position).query(position, 2)[1]
     other = np.where(nearest[:, 0] == grains, nearest[:, 1], nearest[:, 0])  # one in the same place may come first
@@ -215,44 +228,21 @@ def _require_shallow(path, scaled, pairs, overlap):
         worst = np.argmax(beyond / smaller)
         first, second = pairs[worst]
         raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller one more "
-            f"than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a larger tolerance"
-        )
-
-
-def _require_rest(path, rest):
-    if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
-        first, second = rest.pairs[rest.worst]
-        raise PackingError(
-            f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
-            f"{1 + rest.deviation[rest.worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
+            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller one "
+            f"more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a "
+            "larger tolerance"
         )
 
 
 def _in_pieces(path, packing, wanted):
     """The packing, when it is in as many pieces as wanted, or the largest of them."""
-    sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
     if wanted == LARGEST:
         return largest_piece(packing)
+    sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
     if len(sizes) != wanted:
         shown = ", ".join(map(str, sizes[:4])) + (", ..." if len(sizes) > 4 else "")
-        one = f", {_apart(packing)}" if len(sizes) > 1 else ""
         raise PackingError(
-            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains{one}; must be {wanted}: pieces="
+            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains; must be {wanted}: pieces="
             f"{len(sizes)} or {LARGEST} if that is meant, or another tolerance, radius or unit"
         )
     return packing
-
-
-def _apart(packing):
-    """How wide the widest gap is that must be closed to make a packing one piece, in words."""
-    smallest, gap = packing.radius.min(), SMALLEST_GAP
-    while gap <= FARTHEST:
-        pairs = touching(packing.position, packing.radius, gap * smallest)
-        gaps = surface_gaps(packing.position, packing.radius, pairs)
-        edges = coo_matrix((gaps - gaps.min(initial=0.0) + smallest, pairs.T), shape=2 * (packing.grains,))
-        if connected_components(edges, directed=False)[0] == 1:
-            widest = minimum_spanning_tree(edges).data.max() - smallest + gaps.min(initial=0.0)
-            return f"up to {widest / smallest:.2g} radii of the smallest grain apart"
-        gap *= 2
-    return f"more than {FARTHEST:g} radii of the smallest grain apart"

@@ -11,18 +11,49 @@ from math import ceil, pi, sqrt
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from yade_scripts.packings.filling import grain_number, maximum_filling
+from analysis.theory.aggregates import fcc_filling
 from yade_scripts.packings.packing import Packing, PackingError, random_stream
 
 FCC_BASIS = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])  # in edges of the cubic cell
 
 
-def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=False):
-    """A close-packed and extracted aggregate around the origin (A24 section 3); planar: in the plane z = 0.
+def maximum_filling(grain_radius, overlap, planar=False):
+    """Filling factor of the whole lattice, pi/(3 sqrt 2) [2r/(2r-overlap)]^3 (A24 eq 40); lengths in m.
 
-    filling: N = filling (aggregate_radius/grain_radius)^3, squared when planar; aggregate_radius: of the sphere
-    (circle) that holds all centres [m]; grain_radius, overlap (of neighbours in the lattice) in m. The packing is
-    a function of these and (seed, index). Raises PackingError when the lattice doesn't hold that many grains.
+    planar: fraction of the area, pi/(2 sqrt 3) [2r/(2r-overlap)]^2.
+    """
+    if planar:
+        return pi / (2 * sqrt(3)) * (2 * grain_radius / (2 * grain_radius - overlap)) ** 2
+    return fcc_filling(grain_radius, overlap)
+
+
+def grain_number(filling, relative_radius, planar=False):
+    """N = filling (R/r)^3, rounded (A24 section 3), or filling (R/r)^2 in a plane; relative_radius = R/r."""
+    return round(filling * relative_radius ** (2 if planar else 3))
+
+
+def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=False):
+    """A close-packed and extracted aggregate around the origin (A24 section 3), a function of the arguments.
+
+    Parameters
+    ----------
+    filling : float
+        N = filling (aggregate_radius/grain_radius)^3, squared when planar.
+    aggregate_radius, grain_radius, overlap : float
+        Of the sphere (circle) that holds all centres, of a grain, and of neighbours in the lattice [m].
+    seed, index : int
+        Of the random numbers, and of the aggregate.
+    planar : bool
+        Whether all grains lie in the plane z = 0.
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    PackingError
+        When the lattice doesn't hold that many grains.
     """
     limit = maximum_filling(grain_radius, overlap, planar)
     if filling > limit:
@@ -43,24 +74,13 @@ def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=
     kept = np.sort(stream.choice(len(sites), wanted, replace=False, shuffle=False))
     turn = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * pi)]) if planar else Rotation.random(random_state=stream)
     position = turn.apply(sites[kept]) * (1, 1, 0 if planar else 1)
-    return Packing(
-        position,
-        np.full(wanted, float(grain_radius)),
-        seed,
-        dict(
-            packing="cpe",
-            filling=filling,
-            aggregateRadius=aggregate_radius,
-            grainRadius=grain_radius,
-            overlap=overlap,
-            index=index,
-            **({"planar": 1} if planar else {}),
-        ),
-    )
+    about = dict(packing="cpe", filling=filling, aggregateRadius=aggregate_radius, grainRadius=grain_radius)
+    about |= dict(overlap=overlap, index=index, **({"planar": 1} if planar else {}))
+    return Packing(position, np.full(wanted, float(grain_radius)), seed, about)
 
 
 def _lattice_in_circle(spacing, circle_radius, stream):
-    """Sites (N,3), z = 0, of a hexagonal lattice in a circle, relative to its centre, which is random."""
+    """Sites (N, 3), z = 0, of a hexagonal lattice in a circle, relative to its centre, which is random."""
     steps = spacing * np.array([[1, 0, 0], [0.5, sqrt(3) / 2, 0]])
     reach = ceil(2 / sqrt(3) * circle_radius / spacing) + 2
     cells = np.stack(np.meshgrid(*2 * [np.arange(-reach, reach + 1)], indexing="ij"), axis=-1).reshape(-1, 2)
@@ -69,7 +89,7 @@ def _lattice_in_circle(spacing, circle_radius, stream):
 
 
 def _lattice_in_sphere(spacing, sphere_radius, stream):
-    """Sites (N,3) of a face-centred cubic lattice in a sphere, relative to its centre, which is random."""
+    """Sites (N, 3) of a face-centred cubic lattice in a sphere, relative to its centre, which is random."""
     edge = sqrt(2) * spacing
     centre = stream.uniform(0, edge, 3)
     reach = ceil(sphere_radius / edge) + 1

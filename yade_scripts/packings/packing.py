@@ -1,21 +1,18 @@
-"""Packings of spheres: what they are, their contacts, how far they are from touching, saving and loading."""
+"""Packings of spheres: their contacts, sizes and pieces. Lengths in m; files.py saves and loads them."""
 
-import json
-import os
-import zipfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from analysis.measures.fragments import belongs_to_an_aggregate
-from analysis.runs.files import RunFolderError, npz, read_arrays, write_file
-from analysis.runs.folder import read_quantities
-from analysis.runs.format import FORMAT, STATE
+from analysis.measures.fragments import belongs_to_an_aggregate, fragment_labels
+from analysis.measures.structure import fractal_dimension, grains_within, mean_coordination
 from yade_scripts.parameters.errors import InputError
 
-SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
+NEAREST = 3.0  # grain radii: nearer than that the number of grains says how they touch
+ORIGINS = 2000  # grains from which the fractal dimension is taken
+AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 
 
 class PackingError(InputError, ValueError):
@@ -24,7 +21,18 @@ class PackingError(InputError, ValueError):
 
 @dataclass(frozen=True)
 class Packing:
-    """position (N,3) and radius (N,) in m; the seed and parameters that the packing was made from."""
+    """Spheres.
+
+    Attributes
+    ----------
+    position : (N, 3) array
+        Centres [m].
+    radius : (N,) array
+        [m]
+    seed : int
+    parameters : dict
+        What the packing was made from.
+    """
 
     position: np.ndarray
     radius: np.ndarray
@@ -37,14 +45,23 @@ class Packing:
 
 
 def random_stream(seed, index, *more):
-    """numpy Generator of one aggregate of a seed, number index of what SeedSequence(seed).spawn() gives; more: numbers
-    of independent streams of the same aggregate."""
+    """numpy Generator of aggregate number index of a seed; more: numbers of independent streams of the same aggregate."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index, *more)))
 
 
 def centred(position, radius):
-    """Positions (N,3) relative to the centre of mass of grains of one density; radius (N,)."""
+    """Positions (N, 3) relative to the centre of mass of grains of one density and these radii (N,)."""
     return position - np.average(position, axis=0, weights=(radius / radius.max()) ** 3)
+
+
+def moved(packing, shift):
+    """The same packing, every grain moved by shift (3,) [m]."""
+    return replace(packing, position=packing.position + np.asarray(shift))
+
+
+def extent(packing):
+    """Largest distance [m] of a grain's centre from the origin."""
+    return np.linalg.norm(packing.position, axis=1).max()
 
 
 def gyration_radius(packing):
@@ -58,22 +75,53 @@ def characteristic_radius(packing):
     return sqrt(5.0 / 3.0) * gyration_radius(packing)
 
 
-def touching(position, radius, gap=0.0):
-    """Pairs (M,2) of grains whose surfaces are at most `gap` [m] apart; position (N,3), radius (N,) in m."""
-    pairs = cKDTree(position).query_pairs(2 * radius.max() + gap, output_type="ndarray")
-    return pairs[surface_gaps(position, radius, pairs) <= gap]
-
-
 def surface_gaps(position, radius, pairs):
-    """Distances (M,) of the surfaces of pairs (M,2), negative where they overlap, in the unit of position and radius."""
+    """Distances (M,) of the surfaces of pairs (M, 2), negative where they overlap, in the unit of position and radius."""
     distance = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     return distance - radius[pairs].sum(axis=1)
 
 
+def touching(position, radius, gap=0.0):
+    """Pairs (M, 2) of grains whose surfaces are at most `gap` apart, in the unit of position (N, 3) and radius (N,)."""
+    pairs = cKDTree(position).query_pairs(2 * radius.max() + gap, output_type="ndarray")
+    return pairs[surface_gaps(position, radius, pairs) <= gap]
+
+
 def contacts(packing):
-    """Pairs (M,2) of touching grains, sorted, first < second: as far apart as the sum of radii, or less."""
+    """Pairs (M, 2) of touching grains, sorted, first < second."""
     pairs = touching(packing.position, packing.radius)
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
+
+def touching_distance(first, second, grain_radius, overlap):
+    """Distance [m] of the centres of grains of radii first, second [m] (any shape) at rest against each other.
+
+    overlap: of two grains of grain_radius at rest [m]. It goes with the reduced radius R as R^(1/3), since
+    delta_0 = a_0^2/(3 R) and a_0^3 ~ R^2 (A22 eq 1 and after eq 2).
+    """
+    return first + second - overlap * np.cbrt(2 * first * second / ((first + second) * grain_radius))
+
+
+def equilibrium_overlaps(radius, pairs, grain_radius, overlap):
+    """Overlaps (M,) [m] at rest of pairs (M, 2), where that of two grains of grain_radius is `overlap`."""
+    first, second = radius[pairs].T
+    return first + second - touching_distance(first, second, grain_radius, overlap)
+
+
+def largest_cluster(grains, pairs):
+    """(grains of the largest cluster that pairs (M, 2) connect, its pairs in their rows)."""
+    kept = np.flatnonzero(fragment_labels(grains, pairs) == 0)
+    row = np.full(grains, -1)
+    row[kept] = np.arange(len(kept))
+    rows = row[pairs]
+    return kept, rows[(rows >= 0).all(axis=1)]
+
+
+def largest_piece(packing):
+    """The largest connected piece of a packing, where it was; `dropped` among its parameters: how many grains are gone."""
+    kept, _ = largest_cluster(packing.grains, contacts(packing))
+    about = {**packing.parameters, "dropped": packing.grains - len(kept)}
+    return Packing(packing.position[kept], packing.radius[kept], packing.seed, about)
 
 
 def require_apart(first, second):
@@ -89,84 +137,30 @@ def require_apart(first, second):
 
 
 def require_connected(packing):
-    """Raise PackingError when it is in crumbs (fragments.belongs_to_an_aggregate), so that a collision of it has no outcome."""
+    """Raise PackingError when a packing is in crumbs, so that a collision of it has no outcome."""
     try:
         belongs_to_an_aggregate(np.zeros(packing.grains, dtype=int), contacts(packing), packing.radius**3)
     except ValueError as error:
         raise PackingError(str(error)) from None
 
 
-def extent(packing):
-    """Largest distance [m] of a grain's centre from the origin."""
-    return np.linalg.norm(packing.position, axis=1).max()
+def description(packing):
+    """A line about a packing: grains, pieces, contacts, filling factor, radii, fractal dimension; lengths in mean radii.
 
-
-def moved(packing, shift):
-    """The same packing, every grain moved by shift (3,) [m]."""
-    return Packing(packing.position + np.asarray(shift), packing.radius, packing.seed, packing.parameters)
-
-
-def save(path, packing):
-    """Write a packing as .npz: position (N,3), radius (N,) in m, seed, parameters (a JSON text); gyration_radius and
-    characteristic_radius [m] beside them, for whoever reads the file."""
-    content = npz(
-        position=packing.position,
-        radius=packing.radius,
-        seed=packing.seed,
-        parameters=json.dumps(packing.parameters),
-        gyration_radius=gyration_radius(packing),
-        characteristic_radius=characteristic_radius(packing),
-    )
-    write_file(path, content)
-
-
-def is_packing(path):
-    """Whether a file is one that save() wrote, be its grains right or not."""
-    try:
-        return zipfile.is_zipfile(path) and bool(read_arrays(path, ("seed",), texts=("parameters",)))
-    except (RunFolderError, OSError):
-        return False
-
-
-def load(path):
-    """Read a packing that save() wrote.
-
-    Raises PackingError when the file is missing or isn't one, its arrays are not those of SPHERES, or a grain reaches the centre
-    of another one.
+    The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension
+    the mean slope of the number of grains about a grain from NEAREST to the radius of gyration.
     """
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise PackingError(f"{path}: is no regular file; must be an .npz")
-    if os.path.exists(path) and not zipfile.is_zipfile(path):
-        raise PackingError(
-            f"{path}: not a packing; must be an .npz that make_packing.py wrote, as from another program's file by "
-            "make_packing.py a.npz from=FILE unit=um"
-        )
-    try:
-        spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
-        parameters = json.loads(about["parameters"])
-        if not isinstance(parameters, dict):
-            raise ValueError("parameters is no JSON object")
-        if not len(spheres["radius"]):
-            raise ValueError("holds no grain")
-        packing = Packing(**spheres, seed=int(about["seed"]), parameters=parameters)
-    except (RunFolderError, ValueError, TypeError, OverflowError, RecursionError) as error:
-        reason = " ".join(str(error).removeprefix(f"{path}: ").split())
-        raise PackingError(
-            f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
-        ) from None
-    _require_apart(path, packing)
-    return packing
-
-
-def _require_apart(path, packing):
-    """Raise PackingError when a grain reaches another one's centre; how deep contacts may be depends on the material
-    (from_file.py)."""
-    pairs = touching(packing.position, packing.radius, -packing.radius.min())
-    overlap = -surface_gaps(packing.position, packing.radius, pairs)
-    deep = np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))
-    if len(deep):
-        first, second = pairs[deep[0]]
-        raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {overlap[deep[0]]:.3g} m; must be less than the smaller "
-            "radius"
-        )
+    pairs, radius = contacts(packing), packing.radius.mean()
+    pieces = int(fragment_labels(packing.grains, pairs).max()) + 1
+    characteristic, gyration = characteristic_radius(packing), gyration_radius(packing)
+    words = [
+        f"{packing.grains} grains in {pieces} piece{'s' * (pieces > 1)}, {len(pairs)} contacts",
+        f"mean coordination number {mean_coordination(packing.grains, pairs):.3f}",
+        f"filling factor {(packing.radius**3).sum() / characteristic**3:.3g}",
+        f"radius of gyration {gyration / radius:.4g}, characteristic radius {characteristic / radius:.4g} grain radii",
+    ]
+    if gyration > 2 * NEAREST * radius:
+        distance = np.array([NEAREST * radius, gyration])
+        dimension = fractal_dimension(distance, grains_within(packing.position, distance, origins=ORIGINS))
+        words.append(f"fractal dimension {dimension[0]:.2f}")
+    return ", ".join(words)

@@ -1,9 +1,9 @@
 """Contacts brought to rest: positions near the given ones at which every contact has its equilibrium overlap.
 
-Newton's method on the distances of the grains that touch: d_ij(x) = r_i + r_j - delta_ij, each step the smallest motion that
-solves the linearised equations. Contacts without loops, and loops that once were at rest, have an exact solution; where
-there are more contacts than the grains can obey at once, the steps lead to the least sum of k_ij (d_ij - ...)^2, with k_ij
-the stiffness of the contact at rest: the minimum of the elastic energy, where forces balance.
+Newton's method on the distances of the grains that touch: d_ij(x) = r_i + r_j - delta_ij, each step the smallest motion
+that solves the linearised equations. Contacts without loops, and loops that once were at rest, have an exact solution;
+where there are more contacts than the grains can obey at once, the steps lead to the least sum of k_ij (d_ij - ...)^2, with
+k_ij the stiffness of the contact at rest: the minimum of the elastic energy, where forces balance.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,18 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr
 
 from analysis.progress import progress
-from yade_scripts.packings.grain_sizes import touching_distance
-from yade_scripts.packings.packing import surface_gaps, touching
+from yade_scripts.packings.packing import AT_REST, PackingError, equilibrium_overlaps, surface_gaps, touching
 
-AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 MOST_MOVES = 20
 # Of LSQR a step: more of them follow soft modes of dense packings, which are of no use before distances are nearly right
 # (10,800 close-packed grains: 1 % left after 6 steps of 300, 4 % after 6 of 2000).
 ITERATIONS = 300
+DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Positions (N,3) [m], pairs (M,2) of contacts, and how much deeper each (M,) is than at rest, in equilibrium overlaps."""
+    """Positions (N, 3) [m], pairs (M, 2) of contacts, how much deeper each (M,) is than at rest, in equilibrium overlaps."""
 
     position: np.ndarray
     pairs: np.ndarray
@@ -37,15 +36,22 @@ class Rest:
         return int(np.abs(self.deviation).argmax())
 
 
-def equilibrium_overlaps(radius, pairs, grain_radius, overlap):
-    """Overlaps (M,) [m] at rest of pairs (M,2), where that of two grains of grain_radius is `overlap`."""
-    first, second = radius[pairs].T
-    return first + second - touching_distance(first, second, grain_radius, overlap)
-
-
 def at_rest(position, radius, pairs, grain_radius, overlap):
-    """Rest of grains at position (N,3) with radius (N,), of which pairs (M,2) touch; grains that come to overlap on the way
-    are contacts too. overlap: of two grains of grain_radius at rest; all in m."""
+    """Bring contacts to rest.
+
+    Parameters
+    ----------
+    position : (N, 3) array
+    radius : (N,) array
+    pairs : (M, 2) array
+        Grains that touch; those that come to overlap on the way are contacts too.
+    grain_radius, overlap : float
+        The overlap at rest is that of two grains of this radius. All lengths in m.
+
+    Returns
+    -------
+    Rest
+    """
     moved = position.copy()
     for move in progress(range(MOST_MOVES + 1), "bringing contacts to rest", MOST_MOVES + 1):
         pairs = np.unique(np.sort(np.concatenate([pairs, touching(moved, radius)]), axis=1), axis=0)
@@ -56,12 +62,29 @@ def at_rest(position, radius, pairs, grain_radius, overlap):
             return rest
         separation = moved[pairs[:, 0]] - moved[pairs[:, 1]]
         normal = separation / np.linalg.norm(separation, axis=1)[:, None]
-        # k ~ a_0 ~ R^(2/3), as depth^2 (grain_sizes.touching_distance)
+        # k ~ a_0 ~ R^(2/3), as depth^2 (packing.touching_distance)
         moved = moved + _smallest_motion(normal, pairs, missing, depth / overlap, len(radius))
 
 
+def unpressed(position, radius, pairs, grain_radius, overlap):
+    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest().
+
+    Raises
+    ------
+    PackingError
+        Where not all can be at rest, and one stays deeper than DEEPEST or comes apart.
+    """
+    rest = at_rest(position, radius, pairs, grain_radius, overlap)
+    if rest.deviation.min() > -1.0 and rest.deviation.max() < DEEPEST - 1:
+        return rest.position
+    raise PackingError(
+        f"the contacts cannot be brought to rest together: one overlaps by {1 + rest.deviation[rest.worst]:.3g} of the "
+        f"equilibrium; must be at most {DEEPEST:g}: a looser state"
+    )
+
+
 def _smallest_motion(normal, pairs, change, weight, grains):
-    """Motion (N,3) of least length that changes the distances of pairs (M,2) by change (M,), to first order; where that
+    """Motion (N, 3) of least length that changes the distances of pairs (M, 2) by change (M,), to first order; where that
     is impossible, with the least sum of squares of weight (M,) times what is missing."""
     contacts = np.repeat(np.arange(len(pairs)), 3)
     axes = np.tile(np.arange(3), len(pairs))

@@ -48,9 +48,9 @@ from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import equilibrium_overlap
 from yade_scripts.materials import pair_constants as contact_constants
 from yade_scripts.packings.aggregate import AggregateParameters, make
-from yade_scripts.packings.approach import first_touch
-from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
+from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import table
 
 SIZES = {"pilot": 500, "desk": 2_000, "full": 14_000}

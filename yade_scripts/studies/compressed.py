@@ -17,7 +17,7 @@ TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, TOP)
 from analysis.progress import progress
 from yade_scripts import packings
-from yade_scripts.packings.cut import CutParameters, cut, read_periodic_state
+from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import Packing, PackingError
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"

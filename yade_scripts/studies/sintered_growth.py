@@ -5,7 +5,7 @@
 Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive collisions"; it
 isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides head-on with itself, both
 in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is the next one's aggregate
-(yade_scripts/packings/collided.py).
+(yade_scripts/packings/from_run.py).
 
 The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
 needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (analysis/theory/chains.py). One collision, START = 512, gives
@@ -29,8 +29,7 @@ TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, TOP)
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, pair_constants
-from yade_scripts.packings.bcca import bcca
-from yade_scripts.packings.collided import largest_piece_of_run, turned
+from yade_scripts.packings.from_run import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.parameters import CORES
@@ -47,7 +46,7 @@ CROSSINGS = 3.0
 def grow(grown):
     """Make both packings of an aggregate; one line about it. Raises PackingError when a generation doesn't stick."""
     constants = pair_constants(MATERIALS["ice"])
-    aggregate = bcca(START, RADIUS, constants["equilibriumOverlap"], grown.seed, 0, bool(grown.planar))
+    aggregate = packings.bcca(START, RADIUS, constants["equilibriumOverlap"], grown.seed, 0, bool(grown.planar))
     with tempfile.TemporaryDirectory() as folder:
         generation = 0
         while 2 * aggregate.grains <= GRAINS:

@@ -129,7 +129,7 @@ COMMANDS = (
 )
 
 # {module that writes files: the row of which command tries it, or why none does}. The scripts of studies write tables and packings by run/table.py and
-# packings/packing.py.
+# packings/files.py.
 WRITERS = {
     "analysis/atlas/adapters/disk.py": "needs DustPy",
     "analysis/atlas/make.py": "analysis.atlas.make",
@@ -146,7 +146,7 @@ WRITERS = {
     "analysis/runs/running.py": "a temporary file only, for the clock of another machine's disk",
     "analysis/studies/analyse.py": "analysis study",
     "contact_law/installation.py": "install",
-    "yade_scripts/packings/packing.py": "make_packing",
+    "yade_scripts/packings/files.py": "make_packing",
     "yade_scripts/run/folder.py": "collide",
     "yade_scripts/run/heartbeat.py": "collide",
     "yade_scripts/run/table.py": "study --slurm",

@@ -1,4 +1,4 @@
-"""Spheres cut out of a compression: what is kept, contacts at rest, and what moves when they are set free."""
+"""Packings out of runs: spheres cut out of a compression, the largest piece of a collision; contacts are at rest."""
 
 import os
 from dataclasses import replace
@@ -8,10 +8,11 @@ from of_ice import ICE, OVERLAP
 from of_ice import SPACING as APART
 from running import COMPRESS, completed, make_packing
 from scenes import *
-from written_runs import cubic_lattice
+from written_runs import PAIR, cubic_lattice, losing, record, state_arrays, write_run
 
 from yade_scripts import packings
-from yade_scripts.packings.cut import CutParameters, PeriodicState, cut
+from yade_scripts.packings.files import packing_from_file
+from yade_scripts.packings.from_run import CutParameters, PeriodicState, cut, largest_piece_of_run, turned
 from yade_scripts.parameters import ParameterError
 
 
@@ -91,21 +92,14 @@ def test_command_line(run):
         assert f"{name}: {packing.grains} grains" in done.stdout
 
 
-STATE = "run/states/000020.npz"
-WRONG = {
-    f"from={STATE}": "radius: not given; must be that of the sphere to cut [grain radii]",
-    f"from={STATE} radius=90": "radius = 90: a larger sphere than the cell holds; must be at most",
-    "from=run/states/none.npz radius=5": "run/states/none.npz: No such file or directory",
-    "from=run/run.json radius=5": "run/run.json: of an unknown format; must be npz, csv, xyz, LAMMPS",
-    f"from={STATE} radius=5 filling=0.4": "filling: unknown parameter; must be one of radius, seed",
-    f"{STATE} from={STATE} radius=5": f"make_packing.py: {STATE}: is what is read; must be another file",
-}
-
-
-@pytest.mark.parametrize("arguments", WRONG)
-def test_wrong_input_gives_one_line(run, arguments):
-    done = make_packing(run, "x.npz", *arguments.split())
-    assert done.returncode != 0 and done.stderr.count("\n") == 1 and WRONG[arguments] in done.stderr
+def test_wrong_input_gives_one_line(run):
+    for arguments, message in {
+        "from=run/states/000020.npz radius=90": "radius = 90: a larger sphere than the cell holds; must be at most",
+        "from=run/states/none.npz radius=5": "run/states/none.npz: No such file or directory",
+        "from=run/states/000020.npz radius=5 filling=0.4": "filling: unknown parameter; must be one of radius, seed",
+    }.items():
+        done = make_packing(run, "x.npz", *arguments.split())
+        assert done.returncode != 0 and done.stderr.count("\n") == 1 and message in done.stderr
     assert not (run / "x.npz").exists()
 
 
@@ -119,3 +113,45 @@ def test_what_moves_when_a_cut_sphere_is_set_free(run):
     assert np.abs(before["contact_normal_force"]).max() < 5e-3 * c["pullOffForce"]
     assert np.linalg.norm(after["position"] - before["position"], axis=1).max() < 5e-3 * 1e-7
     assert kinetic < 1e-5 * c["pullOffForce"] * c["pullOffOverlap"] * packing.grains
+
+
+# ---- what a collision left ----
+
+R = 1e-7
+AT_REST = 2 * R - PAIR.equilibrium_overlap
+
+
+def made_run(path, bonded=False):
+    """Seven grains: a vibrating bent chain of four, a piece of two, and one alone."""
+    stretched = np.array([0.0, 0.999, 2.003, 2.9, 10.0, 10.95, 20.0]) * 2 * R
+    position = np.column_stack([stretched, np.zeros(7), np.zeros(7)])
+    position[3] = position[2] + 1.002 * AT_REST * np.array([0.6, 0.8, 0.0])
+    state = state_arrays(1e-9, position, 0 * position, [0, 0, 0, 0, 1, 1, 1], [[0, 1], [1, 2], [2, 3], [4, 5]])
+    state["contact_bonded"][:] = bonded
+    about = record(4 * R, {"packing": "bcca", "seed": 5})
+    return write_run(path, about, losing(np.array([0, 1e-9])), [{**state, "time": 0.0}, state])
+
+
+def test_the_largest_piece_of_a_collision_is_at_rest_and_hardly_moved(tmp_path):
+    packing = largest_piece_of_run(made_run(tmp_path / "run"))
+    assert packing.grains == 4 and packing.seed == 5 and packing.parameters["of"] == 7
+    assert packings.contacts(packing).tolist() == [[0, 1], [1, 2], [2, 3]]
+    distance = np.linalg.norm(np.diff(packing.position, axis=0), axis=1)
+    assert distance == pytest.approx(AT_REST, abs=2e-3 * PAIR.equilibrium_overlap)
+    assert 0 < packing.parameters["largestMotion"] < 0.02 * R
+    assert packing.position.mean(axis=0) == pytest.approx(0, abs=1e-12 * R)
+    assert np.all(packing.position[:, 2] == 0)
+    one, other = turned(packing, 3, 0), turned(packing, 3, 1)
+    assert np.all(one.position[:, 2] == 0) and not np.allclose(one.position, other.position)
+    assert packings.gyration_radius(one) == pytest.approx(packings.gyration_radius(packing), rel=1e-12)
+    packings.save(tmp_path / "a.npz", one)
+    back = packing_from_file(str(tmp_path / "a.npz"), R, PAIR.equilibrium_overlap, planar=True)
+    assert np.allclose(back.position, one.position, atol=1e-12 * R)
+    assert packings.load(tmp_path / "a.npz").parameters["packing"] == "collided"
+
+
+def test_pieces_of_other_runs_are_refused(tmp_path):
+    with pytest.raises(packings.PackingError, match="must be a run folder"):
+        largest_piece_of_run(tmp_path)
+    with pytest.raises(packings.PackingError, match="with sintered bonds"):
+        largest_piece_of_run(made_run(tmp_path / "bonded", bonded=True))

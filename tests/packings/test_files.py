@@ -1,4 +1,4 @@
-"""Saved packings in a run: read back to the bit, and what is wrong with one said in one line before anything runs."""
+"""Packings in files: made from the command line, read back to the bit; a run refuses those of other grains."""
 
 import json
 from dataclasses import replace
@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 from of_ice import ICE, OVERLAP, PAIR, RADIUS
 from refused import refused
+from running import make_packing
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, CollisionParameters, place
 from yade_scripts.experiments.collision_step import require_step_of_files, step_limit
 from yade_scripts.materials import equilibrium_overlap, pair_constants
 from yade_scripts.packings.aggregate import make
-from yade_scripts.packings.from_file import packing_from_file
+from yade_scripts.packings.files import OF_CONTACTS, packing_from_file
 from yade_scripts.parameters import ParameterError
 
 
@@ -60,16 +61,28 @@ def write(path, position, radius, **parameters):
     return str(path)
 
 
+@pytest.mark.parametrize("content", [None, b"", b"not an archive"])
+def test_what_is_no_packing_gives_one_line(tmp_path, content):
+    path = tmp_path / "a.npz"
+    if content is not None:
+        path.write_bytes(content)
+    with refused(packings.PackingError, "not a packing", str(path)):
+        packings.load(path)
+
+
 @pytest.mark.parametrize(
     "position, radius, message",
     [
+        (PAIR * (np.nan, 1, 1), [RADIUS] * 2, "'position' holds a value that is not finite"),
+        (PAIR, [RADIUS, 0], "'radius' is 0 at index 1; must be > 0"),
+        (PAIR[:, :2], [RADIUS] * 2, "'position' has the shape (2, 2), expected (2, 3)"),
+        (PAIR * 0.4, [RADIUS] * 2, "must be less than the smaller radius"),
         (PAIR[:1], [RADIUS], "N >= 2"),
-        (PAIR * 0.99, [RADIUS] * 2, "grains 0 and 1 overlap by 3.01e-09 m; must be at most 1.1 of the equilibrium"),
+        (PAIR * 0.99, [RADIUS] * 2, "must be at most 1.1 of the equilibrium"),
         (PAIR * 6, [6 * RADIUS] * 2, "or grainRadius = 6e-07 (one for all packings of a run)"),
     ],
 )
-def test_what_is_wrong_with_a_file(tmp_path, position, radius, message):
-    """Beyond what makes an array no packing at all (test_packing_files.py)."""
+def test_grains_that_no_run_can_start_from_give_one_line(tmp_path, position, radius, message):
     path = write(tmp_path / "a.npz", position, np.array(radius))
     with refused(packings.PackingError, f"{path}: ", message):
         packing_from_file(path, RADIUS, OVERLAP)
@@ -80,41 +93,28 @@ SOFTER = replace(ICE, surfaceEnergy=0.02)
 AS_DEEP = replace(ICE, young=3.5e9, surfaceEnergy=0.05)
 
 
-def pair_of(material, path, *told, **parameters):
-    """A file of two grains at rest, and which constants of their material it tells."""
+def pair_of(material, path, *names, **parameters):
+    """A file of two grains at rest, with these constants of their material."""
     overlap = equilibrium_overlap(material)
     position = np.array([[0.0, 0, 0], [2 * RADIUS - overlap, 0, 0]])
-    given = {name: getattr(material, name) for name in told}
+    given = {name: getattr(material, name) for name in names}
     return write(path, position, np.full(2, RADIUS), overlap=overlap, **given, **parameters)
 
 
-TOLD = ("young", "poisson", "surfaceEnergy")
-OTHERS = [
-    (SOFTER, TOLD, "made of grains with surfaceEnergy = 0.02, not 0.1; must be a pack"),
-    (SOFTER, (), "its contacts overlap by 3.49e-10 m, those of these grains at rest by 1.02e-09 m; must be a packing"),
-    (AS_DEEP, TOLD, "made of grains with young = 3.5e+09, not 7e+09; must be"),
-]
-
-
-@pytest.mark.parametrize("material, told, message", OTHERS)
-def test_grains_of_another_material_are_refused(tmp_path, material, told, message):
+@pytest.mark.parametrize(
+    "material, names, message",
+    [
+        (SOFTER, OF_CONTACTS, "made of grains with surfaceEnergy = 0.02, not 0.1"),
+        (SOFTER, (), "its contacts overlap by 3.49e-10 m, those of these grains at rest by 1.02e-09 m"),
+        (AS_DEEP, OF_CONTACTS, "made of grains with young = 3.5e+09, not 7e+09"),
+    ],
+)
+def test_grains_of_another_material_are_refused(tmp_path, material, names, message):
     """A sphere cut out of a cell of other grains: contacts that are out of rest have an energy that nobody put in."""
-    path = pair_of(material, tmp_path / "a.npz", *told, packing="compressed")
+    path = pair_of(material, tmp_path / "a.npz", *names, packing="compressed")
     with refused(packings.PackingError, f"{path}: ", message):
         packing_from_file(path, RADIUS, OVERLAP, grains=ICE)
     assert packing_from_file(path, RADIUS, equilibrium_overlap(material), grains=material).grains == 2
-
-
-def test_parameters_that_are_none(tmp_path):
-    path = str(tmp_path / "a.npz")
-    for text, words in (
-        ("[1, 2]", "parameters is no JSON object"),
-        ('{"grainRadius": "thick"}', "grainRadius among its parameters is 'thick'; must be a number"),
-        ('{"overlap": "deep"}', "overlap among its parameters is 'deep'; must be a number"),
-    ):
-        np.savez(path, position=PAIR, radius=[RADIUS] * 2, seed=1, parameters=text)
-        with refused(packings.PackingError, words):
-            packing_from_file(path, RADIUS, OVERLAP)
 
 
 def test_a_planar_run_takes_planar_packings_only(tmp_path):
@@ -157,8 +157,12 @@ def test_the_step_of_files_is_that_of_their_smallest_grain(tmp_path):
         require(1.01 * made)
     packings.save(path, packings.bpca(40, RADIUS, OVERLAP, 1))
     require(0.3)
-    tiny = RADIUS / 1e4
-    path = write(tmp_path / "a.npz", np.array([[0.0, 0, 0], [2 * RADIUS, 0, 0]]), np.array([RADIUS, tiny]))
-    parameters = CollisionParameters.parse(dict(packing="file", file=path, stepFraction=1e-9))
-    with pytest.raises(ParameterError, match="grainRadius = 1e-11: contacts at rest have a radius of"):
-        require_step_of_files(parameters, constants, [packings.load(path)] * 2)
+
+
+def test_the_command_makes_packings_and_says_of_what(tmp_path):
+    done = make_packing(tmp_path, "a.npz", "b.npz", "radius=10", "seed=3")
+    assert done.returncode == 0, done.stderr
+    for index, name in enumerate(["a.npz", "b.npz"]):
+        loaded, expected = packings.load(tmp_path / name), packings.cpe(0.4, 10 * RADIUS, RADIUS, OVERLAP, 3, index)
+        assert np.array_equal(loaded.position, expected.position) and np.array_equal(loaded.radius, expected.radius)
+        assert loaded.seed == 3 and expected.parameters.items() <= loaded.parameters.items()

@@ -9,9 +9,9 @@ import re
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from yade_scripts.packings.foreign.spheres import FORMATS
 from yade_scripts.packings.packing import PackingError
 
+FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 HEAD = 60  # lines in which names, comments and headers stand
 # https://docs.lammps.org/read_data.html, "Atoms section"
 ATOM_STYLES = {
@@ -28,15 +28,14 @@ _ATOMS = re.compile(r"\s*\d+\s+atoms\b")
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of numbers in a file: how many lines are before them, how many rows there are (None: to the end), names of the
-    columns (None: not known), what separates them, the unit of length if the format has one."""
+    """Where the rows of numbers are in a file."""
 
     kind: str
-    first: int
-    rows: int | None
-    names: tuple | None
+    first: int  # lines before them
+    rows: int | None  # None: to the end
+    names: tuple | None  # of the columns; None: not known
     separator: str = r"\s+"
-    unit: str | None = None
+    unit: str | None = None  # of length, if the format has one
 
 
 class _Lines:

@@ -1,0 +1,186 @@
+"""Packings in files: written by save(), read back by load(), and checked for a run by packing_from_file()."""
+
+import hashlib
+import json
+import os
+import zipfile
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from analysis.runs.files import SUM, RunFolderError, npz, read_arrays, write_file
+from analysis.runs.folder import read_quantities
+from analysis.runs.format import FORMAT, STATE
+from yade_scripts.packings.packing import (
+    AT_REST,
+    Packing,
+    PackingError,
+    centred,
+    characteristic_radius,
+    contacts,
+    equilibrium_overlaps,
+    gyration_radius,
+    moved,
+    surface_gaps,
+    touching,
+)
+
+SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
+OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
+DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
+
+
+def save(path, packing):
+    """Write a packing as .npz: position (N, 3), radius (N,) in m, seed, parameters (a JSON text).
+
+    gyration_radius and characteristic_radius [m] stand beside them, for whoever reads the file.
+    """
+    content = npz(
+        position=packing.position,
+        radius=packing.radius,
+        seed=packing.seed,
+        parameters=json.dumps(packing.parameters),
+        gyration_radius=gyration_radius(packing),
+        characteristic_radius=characteristic_radius(packing),
+    )
+    write_file(path, content)
+
+
+def is_packing(path):
+    """Whether a file is one that save() wrote, be its grains right or not."""
+    try:
+        return zipfile.is_zipfile(path) and bool(read_arrays(path, ("seed",), texts=("parameters",)))
+    except (RunFolderError, OSError):
+        return False
+
+
+def load(path):
+    """Read a packing that save() wrote.
+
+    Raises
+    ------
+    PackingError
+        When the file is missing or is none, or a grain reaches the centre of another one.
+    """
+    if os.path.exists(path) and not zipfile.is_zipfile(path):
+        raise PackingError(
+            f"{path}: not a packing; must be an .npz that make_packing.py wrote, as from another program's file by "
+            "make_packing.py a.npz from=FILE unit=um"
+        )
+    try:
+        spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
+        parameters = json.loads(about["parameters"])
+        if not isinstance(parameters, dict):
+            raise ValueError("parameters is no JSON object")
+        if not len(spheres["radius"]):
+            raise ValueError("holds no grain")
+        packing = Packing(**spheres, seed=int(about["seed"]), parameters=parameters)
+    except (RunFolderError, ValueError, TypeError, OverflowError, RecursionError) as error:
+        reason = " ".join(str(error).removeprefix(f"{path}: ").split())
+        raise PackingError(
+            f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
+        ) from None
+    pairs = touching(packing.position, packing.radius, -packing.radius.min())
+    overlap = -surface_gaps(packing.position, packing.radius, pairs)
+    for number in np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))[:1]:
+        first, second = pairs[number]
+        raise PackingError(
+            f"{path}: grains {first} and {second} overlap by {overlap[number]:.3g} m; must be less than the smaller radius"
+        )
+    return packing
+
+
+def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
+    """The packing in a file, with its centre of mass at the origin, if a run can start from it.
+
+    Parameters
+    ----------
+    path : str
+    grain_radius, overlap : float
+        Of the run's grains, and of two of them at rest [m].
+    planar : bool
+        Whether all grains must lie in the plane z = 0.
+    grains : object, optional
+        The run's grains: anything with the attributes OF_CONTACTS.
+
+    Returns
+    -------
+    Packing
+        With the sum of its grains among its parameters.
+
+    Raises
+    ------
+    PackingError
+        When it is no packing, is made of other grains (as far as it says), or grains overlap too deeply.
+    """
+    packing = load(path)
+    if packing.grains < 2:
+        raise PackingError(f"{path}: holds {packing.grains} grains; must be N >= 2")
+    _require_material(path, packing, grain_radius, grains)
+    _require_rest(path, packing, grain_radius, overlap)
+    if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
+        raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
+    found = moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+    return replace(found, parameters={**packing.parameters, SUM: _sum(packing)})
+
+
+def sum_of_file(path):
+    """SHA-256 of the grains in a packing's file; None where it can't be read. A run keeps it, to notice another file."""
+    try:
+        return _sum_as_written(path, os.stat(path).st_mtime_ns)
+    except (OSError, PackingError):
+        return None
+
+
+@lru_cache
+def _sum_as_written(path, _when):
+    return _sum(load(path))
+
+
+def _sum(packing):
+    return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
+
+
+def _require_material(path, packing, grain_radius, grains):
+    """The file's grains must be those of the run; contacts of others would pull or press from the start on."""
+    made_of = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
+    wanted = {"grainRadius": grain_radius, **{name: getattr(grains, name, None) for name in OF_CONTACTS}}
+    for name, value in wanted.items():
+        stored = _number(path, made_of, name)
+        if None in (stored, value) or np.isclose(stored, value, rtol=1e-6, atol=0):
+            continue
+        raise PackingError(
+            f"{path}: made of grains with {name} = {stored:g}, not {value:g}; must be a packing of such grains, or "
+            f"{name} = {stored:g} (one for all packings of a run)"
+        )
+
+
+def _require_rest(path, packing, grain_radius, overlap):
+    """Contacts must be at rest by what the file says of them, and none far too deep. A cpe packing may have been made loose
+    on purpose (initialOverlap)."""
+    stored = None if packing.parameters.get("packing") == "cpe" else _number(path, packing.parameters, "overlap")
+    if stored is not None and abs(stored - overlap) > AT_REST * overlap:
+        raise PackingError(
+            f"{path}: its contacts overlap by {stored:.3g} m, those of these grains at rest by {overlap:.3g} m; must be a "
+            "packing of grains of the same material"
+        )
+    pairs = contacts(packing)
+    if not len(pairs):
+        return
+    deep = -surface_gaps(packing.position, packing.radius, pairs)
+    at_rest = equilibrium_overlaps(packing.radius, pairs, grain_radius, overlap)
+    worst = np.argmax(deep / at_rest)
+    if deep[worst] > DEEPEST * at_rest[worst]:
+        raise PackingError(
+            f"{path}: grains {pairs[worst, 0]} and {pairs[worst, 1]} overlap by {deep[worst]:.3g} m; must be at most "
+            f"{DEEPEST:g} of the equilibrium overlap of {at_rest[worst]:.3g} m"
+        )
+
+
+def _number(path, parameters, name):
+    """A number among a packing's parameters, or None."""
+    value = parameters.get(name)
+    if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
+        raise PackingError(f"{path}: {name} among its parameters is {value!r}; must be a number")
+    return value

@@ -1,0 +1,201 @@
+"""Packings out of runs: a sphere cut out of a compression (Oshiro et al. 2025), the largest piece of a collision (S17).
+
+Grains of a run's state are under pressure, or still vibrate: contacts are brought to rest by the smallest motion of the
+grains that gives every contact its equilibrium overlap. A run starts from contacts that have neither slid, rolled nor
+twisted.
+"""
+
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from analysis.runs.files import RunFolderError, array_names, read_bytes
+from analysis.runs.folder import open_run, read_record, read_state, sum_in
+from analysis.runs.format import COMPRESSION, FORMAT
+from yade_scripts.packings.files import OF_CONTACTS
+from yade_scripts.packings.packing import Packing, PackingError, centred, largest_cluster, random_stream
+from yade_scripts.packings.rest import unpressed
+from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
+
+NO_RUN = (OSError, ValueError, KeyError, TypeError, AttributeError, RunFolderError)  # what reading one may raise
+
+
+@dataclass(frozen=True)
+class CutParameters(Parameters):
+    """The sphere that is cut out of a state (from=RUN/states/NNNNNN.npz)."""
+
+    radius: float | None = parameter(None, POSITIVE, "radius of the sphere that holds all centres", "grain radii")
+    seed: int = parameter(1, NOT_NEGATIVE, "of its place in the cell and its orientation")
+
+
+@dataclass(frozen=True)
+class PeriodicState:
+    """A state of a compression.
+
+    Attributes
+    ----------
+    position, radius, contact_pairs, cell_size : array
+        (N, 3), (N,), (M, 2), (3,); lengths in m.
+    overlap : float
+        Of two grains at rest [m].
+    material : dict
+        Values of OF_CONTACTS, SI, as far as they are known.
+    axis, walls
+        Between walls: their axis and places (2,) [m].
+    """
+
+    position: np.ndarray
+    radius: np.ndarray
+    contact_pairs: np.ndarray
+    cell_size: np.ndarray
+    overlap: float
+    material: dict = field(default_factory=dict)
+    axis: int | None = None
+    walls: np.ndarray | None = None
+
+
+def holds(path, name):
+    """Whether a file is an .npz with an array of that name; states of a compression hold cell_size."""
+    try:
+        return name in array_names(path)
+    except RunFolderError:
+        return False
+
+
+def record_of_state(path):
+    """run.json of the run that RUN/states/NNNNNN.npz belongs to, if the state is as the run left it; RunFolderError."""
+    run = os.path.dirname(os.path.dirname(os.path.abspath(path)))
+    record, sums = read_record(run)
+    read_bytes(path, sum_in(sums, run, os.path.relpath(path, run)))
+    return record
+
+
+def read_periodic_state(path):
+    """PeriodicState of RUN/states/NNNNNN.npz; raises PackingError when it is none."""
+    try:
+        record = record_of_state(path)
+        state = read_state(path, COMPRESSION, record.get("format", FORMAT))
+        derived = record["derived"]
+        overlap = float(derived["equilibriumOverlap"])
+        material = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
+    except NO_RUN as error:
+        raise PackingError(
+            f"from = {path}: {_reason(error)}; must be a state of a compression, RUN/states/NNNNNN.npz"
+        ) from None
+    if state.cell_size is None:
+        raise PackingError(f"from = {path}: not of a periodic cell; must be a state of a compression")
+    walls = () if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
+    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material, *walls)
+
+
+def cut(state, parameters, index=0):
+    """A sphere cut out of a state of a compression, around the origin.
+
+    Its centre is random in the cell; grains whose centre lies outside are dropped, and those that are then no longer
+    connected with the most; a random orientation.
+
+    Parameters
+    ----------
+    state : PeriodicState
+    parameters : CutParameters
+    index : int
+        Of the aggregate: places and orientations differ.
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    ParameterError, PackingError
+    """
+    grain_radius = float(state.radius.max())
+    if parameters.radius is None:
+        raise ParameterError("radius: not given; must be that of the sphere to cut [grain radii]")
+    reach = parameters.radius * grain_radius
+    room, where = state.cell_size.copy(), "cell"
+    if state.walls is not None:
+        room[state.axis], where = np.ptp(state.walls), "space between the walls"
+    largest = float(room.min()) / 2 / grain_radius
+    if parameters.radius > largest:
+        raise ParameterError(
+            f"radius = {parameters.radius:g}: a larger sphere than the {where} holds; must be at most {largest:.4g} "
+            "[grain radii]"
+        )
+    stream = random_stream(parameters.seed, index)
+    place = stream.uniform(0, 1, 3)
+    centre = place * state.cell_size
+    if state.walls is not None:  # the sphere lies between them
+        centre[state.axis] = state.walls[0] + reach + place[state.axis] * (room[state.axis] - 2 * reach)
+    position = state.position - centre
+    position = position - state.cell_size * np.round(position / state.cell_size)
+    inside = np.flatnonzero(np.linalg.norm(position, axis=1) <= reach)
+    kept, pairs = largest_cluster(len(inside), _pairs_within(position, state.contact_pairs, inside))
+    if len(kept) < 2:
+        raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
+    position, radius = position[inside[kept]], state.radius[inside[kept]]
+    moved = unpressed(position, radius, pairs, grain_radius, state.overlap)
+    about = dict(
+        packing="compressed",
+        aggregateRadius=reach,
+        grainRadius=grain_radius,
+        filling=len(kept) / parameters.radius**3,
+        overlap=state.overlap,
+        **state.material,
+        index=index,
+        dropped=len(inside) - len(kept),
+        largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
+    )
+    orientation = Rotation.random(random_state=stream)
+    return Packing(orientation.apply(moved - moved.mean(axis=0)), radius, parameters.seed, about)
+
+
+def _pairs_within(position, pairs, inside):
+    """Rows (M, 2) among `inside` of the contacts between those grains that do not reach across the cell."""
+    row = np.full(len(position), -1)
+    row[inside] = np.arange(len(inside))
+    chosen = row[pairs]
+    apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
+    near = apart < 3 * np.median(apart) if len(apart) else np.zeros(0, bool)
+    return chosen[(chosen >= 0).all(axis=1) & near]
+
+
+def largest_piece_of_run(path):
+    """The largest piece in the last state of a collision's run folder, at rest, around the origin; raises PackingError."""
+    try:
+        run = open_run(path)
+        state, overlap = run.last, float(run.derived["equilibriumOverlap"])
+        grain_radius = float(run.derived["grainRadius"])
+    except NO_RUN as error:
+        raise PackingError(f"after = {path}: {_reason(error)}; must be a run folder") from None
+    if state.cell_size is not None or state.contact_bonded.any():
+        raise PackingError(f"after = {path}: periodic, or with sintered bonds; must be a collision without them")
+    inside, pairs = largest_cluster(len(state.radius), state.contact_pairs)
+    position, radius = state.position[inside], state.radius[inside]
+    moved = unpressed(position, radius, pairs, grain_radius, overlap)
+    about = dict(
+        packing="collided",
+        grainRadius=grain_radius,
+        overlap=overlap,
+        of=len(state.radius),
+        largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
+    )
+    return Packing(centred(moved, radius), radius, int(run.parameters.get("seed", 0)), about)
+
+
+def turned(packing, seed, index=0):
+    """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in it."""
+    stream = random_stream(seed, index)
+    if np.any(packing.position[:, 2] != 0):
+        rotation = Rotation.random(random_state=stream)
+    else:
+        rotation = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)])
+    position = rotation.apply(packing.position)
+    position[:, 2] *= np.any(packing.position[:, 2] != 0)
+    return Packing(position, packing.radius, seed, {**packing.parameters, "index": index})
+
+
+def _reason(error):
+    return " ".join(str(error).split())
