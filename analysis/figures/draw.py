@@ -1,29 +1,31 @@
-"""All figures of a run."""
+"""All figures of a run. A new one: its function, which takes a RunFolder, and a line in FIGURES."""
 
-import pkgutil
-from importlib import import_module
 from pathlib import Path
 
+from ..measures.of_run import are_equal
 from ..progress import progress
 from ..runs.files import make_folder, replacing
-from . import of_run
+from ..runs.format import COLLISION, COMPRESSION
+from .collision import forces_figure, grains_figure, motion_figure
+from .energy import compression_figure, energy_figure
+
+# (name, function, whether a run has it)
+FIGURES = (
+    ("motion", motion_figure, lambda run: run.kind is COLLISION and are_equal(run)),
+    ("energy", energy_figure, lambda run: run.kind is not COMPRESSION),  # which begins almost at rest
+    ("grains", grains_figure, lambda run: run.kind is COLLISION),
+    ("forces", forces_figure, lambda run: run.kind is COLLISION),
+    ("compression", compression_figure, lambda run: run.kind is COMPRESSION),
+)
 
 
 def figures_of(run):
-    """{name: function of the run that makes the figure} for a RunFolder's kind, found by their modules."""
-    modules = {m.name: import_module(f"{of_run.__name__}.{m.name}") for m in pkgutil.iter_modules(of_run.__path__)}
-    return {
-        name: module.FIGURE
-        for name, module in modules.items()
-        if run.kind.name in getattr(module, "KINDS", (run.kind.name,))
-        and run.kind.name not in getattr(module, "NOT_OF", ())
-        and getattr(module, "HAS_MEANING", lambda run: True)(run)
-    }
+    """{name: function of the run that makes the figure} of the figures that a RunFolder has."""
+    return {name: make for name, make, has in FIGURES if has(run)}
 
 
 def draw_all(run, folder):
-    """Draw every figure of a RunFolder into `folder` (made if missing) as NAME.png; yields each file's path
-    once written.
+    """Draw every figure of a RunFolder into `folder` (made if missing) as NAME.png; yields the path of each file.
 
     RunFolderError when the run lacks what a figure shows, OSError when the folder can't be written.
     """

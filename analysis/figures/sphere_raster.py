@@ -25,8 +25,8 @@ def paint_spheres(position, radius, colour, window, pixel, fading=4.0):
 
 
 def _covered(position, radius, origin, size, pixel):
-    """Spheres (rows), pixels of the image that they cover, and the surface's z there, in parts: those of all small spheres at one offset
-    from their central pixel, and each larger sphere by itself."""
+    """Spheres (rows), pixels of the image that they cover, and the surface's z there, in parts: those of all small
+    spheres at one offset from their central pixel, and each larger sphere by itself."""
     column, row = ((position[:, k] - origin[k]) / pixel for k in (0, 1))
     # At least one pixel each: a grain smaller than a pixel must not vanish.
     pixels = np.maximum(radius / pixel, 0.75)

@@ -1,12 +1,21 @@
-"""Common look of the figures: sizes and fonts (colours of grains: grain_colours; of the channels: runs.format)."""
+"""Common look of the figures: sizes, fonts, panels with letters, legends, and how they are saved small."""
 
 import io
+from functools import wraps
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+from PIL import Image  # with which matplotlib itself writes PNGs
+
+from ..runs.files import replacing
 
 NANO = 1e9
+OURS, PAPER = "#111111", "#7b3fa0"  # the colours of what is ours and what is a paper's
+DOTS_PER_INCH = 80  # a gallery of all of a study's figures stays below 1.5 MB
+COLOURS, KEPT = 256, 192  # of a small picture, and how many of them stay as they are
 
 _SETTINGS = {
     "font.size": 11,
@@ -24,11 +33,11 @@ _SETTINGS = {
 def styled(make):
     """Decorator: make(...) -> Figure under this module's settings."""
 
+    @wraps(make)
     def figure_of(*arguments, **options):
         with rc_context(_SETTINGS):
             return make(*arguments, **options)
 
-    figure_of.__name__, figure_of.__doc__ = make.__name__, make.__doc__
     return figure_of
 
 
@@ -48,6 +57,34 @@ def new_figure(width, height, **options):
     return figure
 
 
+def panels(rows, columns, width=5.2, height=4.2):
+    """(figure, axes array (rows, columns))."""
+    figure = new_figure(width * columns, height * rows, constrained_layout=True)
+    return figure, figure.subplots(rows, columns, squeeze=False)
+
+
+def letter(axes, text):
+    """(a), (b), ... at the upper left of each of the axes, with `text` at the upper right of the last."""
+    flat = list(np.ravel(axes))
+    for place, name in zip(flat, "abcdefgh"):
+        place.set_title(f"({name})" if len(flat) > 1 else "", loc="left")
+    flat[-1].set_title(text, loc="right", fontsize=10, color="0.3")
+
+
+def legend(axes, **options):
+    """Legend without a frame, where there is something to name."""
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(frameon=False, **options)
+
+
+def plain_ticks(axis):
+    """Ticks of a logarithmic axis with plain numbers, at 1, 2 and 5 where it spans less than two decades."""
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 50 * low else (1,)))
+    axis.set_major_formatter(lambda number, _: f"{number:g}")
+    axis.set_minor_formatter(NullFormatter())
+
+
 def run_title(run, addition=None):
     """Short description of a run from its parameters; empty when they say nothing known; with an addition."""
     p = run.parameters
@@ -65,3 +102,24 @@ def run_title(run, addition=None):
             continue
         parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
     return ", ".join(parts + [addition] * bool(addition))
+
+
+def save_small(figure, file):
+    """Save a matplotlib Figure as a PNG with a palette, at less than half the size.
+
+    Its commonest colours, those of lines, markers and areas, stay what they are; shades between them are merged.
+    """
+    image = io.BytesIO()
+    figure.savefig(image, dpi=DOTS_PER_INCH)
+    picture = Image.open(image).convert("RGB")
+    counts = sorted(picture.getcolors(picture.width * picture.height), reverse=True)
+    kept = [colour for _, colour in counts[:KEPT]]
+    merged = picture.quantize(COLOURS - KEPT, dither=Image.Dither.NONE).convert("RGB")
+    palette = kept + [colour for _, colour in merged.getcolors(COLOURS)]
+    shades, places = np.unique(np.asarray(picture).reshape(-1, 3), axis=0, return_inverse=True)
+    distance = np.abs(shades[:, None].astype(np.int16) - np.array(palette, dtype=np.int16)).sum(axis=2)
+    small = distance.argmin(axis=1).astype(np.uint8)[places.reshape(picture.height, picture.width)]
+    small = Image.fromarray(small, "P")
+    small.putpalette([value for colour in palette for value in colour])
+    with replacing(file) as out:
+        small.save(out, format="png", optimize=True)

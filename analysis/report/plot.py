@@ -8,8 +8,7 @@ from matplotlib import colormaps
 from matplotlib.transforms import offset_copy
 from scipy.stats import binomtest
 
-from ..figures.panels import legend, letter, panels
-from ..figures.style import styled
+from ..figures.style import legend, letter, panels, plain_ticks, styled
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
 from ..printable import suggested
 from ..runs.format import CHANNELS, COLOURS, COMPRESSION
@@ -240,6 +239,7 @@ def _draw(found, what, x, by, logarithmic, units):
             place.set_title(title + _pairs_text([n for *_, points in curves for n in points.pairs]), fontsize=10)
         for name in logarithmic:
             getattr(place, f"set_{name}scale")("log")
+            plain_ticks(getattr(place, f"{name}axis"))
         place.set_xlabel(_with_unit(units, x))
         place.set_ylabel(_y_label(found, what, units))
         legend(place, fontsize=8)

@@ -206,7 +206,7 @@ def _plain(value):
 def _draw(study, results, folder):
     """({name: (file name, caption)} of the figures that are there, [name] of those that need run folders)."""
     # matplotlib is slow to load, and the numbers do without it.
-    from ..figures.save import save_small, save_vector
+    from ..figures.style import save_small
 
     there, undrawn = {}, []
     for figure in progress(figures(study), "drawing"):
@@ -220,7 +220,8 @@ def _draw(study, results, folder):
             else:
                 save_small(drawn, file)
                 if figure.vector:
-                    save_vector(drawn, file.with_suffix(".pdf"))
+                    with replacing(file.with_suffix(".pdf")) as out:
+                        drawn.savefig(out, format="pdf", metadata={"CreationDate": None})
         except NoRunFolder:
             # One of an earlier analysis stays.
             undrawn.append(figure.name)

@@ -8,13 +8,12 @@ from matplotlib import colormaps
 from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import offset_copy
 
-from ..figures.panels import legend, letter, panels
-from ..figures.style import styled
+from ..figures.style import legend, letter, panels, styled
 from ..runs.format import COLOURS as CHANNEL_COLOURS
 from .levels import level
 from .runs import select
 
-# None of them the paper's (figures.panels.PAPER).
+# None of them the paper's (figures.style.PAPER).
 COLOURS = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
 WIDEST = 3  # panels beside each other; four where there are no more

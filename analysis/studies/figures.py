@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from ..figures.collision_view import draw_view, reach
-from ..figures.panels import legend, letter, panels
-from ..figures.style import styled
+from ..figures.collision import draw_view, reach
+from ..figures.style import legend, letter, panels, styled
 from ..runs.files import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 
@@ -36,7 +35,7 @@ def curves(
     log : str
         Logarithmic axes: '', 'x', 'y' or 'xy'.
     paper : callable, optional
-        (axes, the panel's word) -> None: draws what the paper has, in figures.panels.PAPER.
+        (axes, the panel's word) -> None: draws what the paper has, in figures.style.PAPER.
     level : float, optional
         Where a thin line is drawn.
     limits : tuple, optional

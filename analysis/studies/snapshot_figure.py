@@ -5,9 +5,8 @@ from typing import Callable
 
 import numpy as np
 
-from ..figures.collision_view import draw_view, reach
-from ..figures.panels import panels
-from ..figures.style import styled
+from ..figures.collision import draw_view, reach
+from ..figures.style import panels, styled
 from ..runs.files import read_arrays
 from ..runs.table import NoRunFolder, run_folder
 

@@ -5,7 +5,7 @@ from math import inf, log10
 
 import numpy as np
 
-from ..figures.panels import PAPER
+from ..figures.style import PAPER
 from ..measures.fragments import (
     cumulative_cross_section,
     cumulative_grains,

@@ -7,13 +7,10 @@ import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
 
-from analysis.figures.of_run.energy import energy_figure
-from analysis.figures.of_run.forces import force_kinds, forces_figure
-from analysis.figures.of_run.grains import grains_figure
-from analysis.figures.of_run.motion import motion_figure
-from analysis.figures.save import save_small
+from analysis.figures.collision import force_kinds, forces_figure, grains_figure, motion_figure
+from analysis.figures.energy import energy_figure
 from analysis.figures.sphere_raster import paint_spheres
-from analysis.figures.style import new_figure
+from analysis.figures.style import new_figure, save_small
 from analysis.measures.compression import maximum_compression
 from analysis.measures.ledger import fractions
 from analysis.runs.folder import open_run

@@ -17,8 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...figures.save import save_small
-from ...figures.style import new_figure, styled
+from ...figures.style import new_figure, save_small, styled
 from ...progress import progress
 from ...runs.files import replacing
 from .dustpy import use_atlas

@@ -6,8 +6,7 @@ from ...atlas.make import SIZES
 from ...atlas.outcome_table import read_outcomes
 from ...atlas.query import outcomes_file
 from ...atlas.variables import STRUCTURES, decided, drawn, of_structure, variables
-from ...figures.panels import letter, panels
-from ...figures.style import styled
+from ...figures.style import letter, panels, styled
 from ..curve_figure import COLOURS, plain_ticks, points
 from ..definition import StudyFigure
 from ..runs import select

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ...figures.panels import PAPER, legend, panels
-from ...figures.style import styled
+from ...figures.style import PAPER, legend, panels, styled
 from ...theory.compression import tensile_strength
 from ..curve_figure import CurveFigure, palette, plain_ticks, points
 from ..definition import StudyFigure

@@ -5,8 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from ...figures.panels import OURS, PAPER, legend, letter, panels
-from ...figures.style import styled
+from ...figures.style import OURS, PAPER, legend, letter, panels, styled
 from ...theory import ICE
 from ..curve_figure import MARKERS, CurveFigure, pairs_text, points
 from ..definition import StudyFigure

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...figures.panels import PAPER
+from ...figures.style import PAPER
 from ...theory import ICE, pair_constants
 from ...theory.chains import stretching_period
 from ..curve_figure import CurveFigure
