@@ -14,7 +14,7 @@
 # make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open; SIZE=decide: more seeds
 # make study-compressed  collisions of compressed aggregates beside CPE ones
 # make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)
-# make gallery-atlas  makes its page, model and table of outcomes again
+# make gallery-atlas  fits its model and makes its tables of outcomes and its page again
 # make tables  writes the tables of all studies, yade_scripts/studies/*.table (study.py NAME writes the one that it needs)
 # make study-status STUDY=viscous  how far a study is, from another shell
 # make gallery  checks the numbers of the pages above all studies, analysis/gallery/README.md and paper.md, against these

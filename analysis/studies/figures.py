@@ -98,7 +98,7 @@ def points(axes, x, found, colour, label=None, marker="o", line=""):
         capsize=3,
         label=label,
     )
-    axes.plot(x, value, line or "none", color=colour, lw=1.2)
+    axes.plot(x, value, linestyle=line or "none", color=colour, lw=1.2)
     axes.plot(np.asarray(x)[known], value[known], marker, color=colour, ms=5, zorder=3)
 
 
