@@ -168,8 +168,7 @@ def _add_export(commands):
 
 def write_export(options):
     """Exit status: 0, or 2 when the run could not be read or the files not be written."""
-    from ..export.extended_xyz import write_xyz
-    from ..export.vtk_series import write_vtk
+    from ..export.formats import write_vtk, write_xyz
     from ..runs.folder import open_run
 
     writers = dict(zip(FORMATS, (write_vtk, write_xyz)))

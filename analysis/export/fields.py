@@ -96,7 +96,7 @@ CONTACTS = (
 
 
 def grain_fields(exported):
-    """{name: array} of the grains; without `mass` where the run tells no density."""
+    """{name: array} of the grains, without `mass` if the run has no density."""
     return {f.name: f.values(exported) for f in GRAINS if f.name != "mass" or exported.density is not None}
 
 

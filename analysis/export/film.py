@@ -1,9 +1,11 @@
 """A film of a run: a frame for each saved state, seen along an axis, with a scale bar; encoded by ffmpeg."""
 
 import os
+import shutil
 import subprocess
 import tempfile
 from functools import cache
+from itertools import chain
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -13,11 +15,13 @@ from ..figures.sphere_raster import paint_spheres
 from ..figures.style import NANO
 from ..progress import progress
 from ..runs.files import replacing, require_output
-from ..signals import held
 from .fields import exported_states
 
+ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
+AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
 FRAMES_PER_SECOND = 10
 WIDTH = 960  # pixels
+_NARROWEST = 480  # pixels, for the legend
 _TALLEST = 9 / 8  # over the width
 _FASTEST_GIF = 50  # frames a second that all programs show
 _MARGIN = 2.0  # grain radii
@@ -31,16 +35,29 @@ class NoFilm(Exception):
     """The film could not be encoded; the message is one line."""
 
 
-ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
-AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
-_NARROWEST = 480  # pixels, for the legend
-
-
 def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
-    """Write the states of a RunFolder as a film (one of ENDINGS: H.264 in that container, or a .gif that repeats), `width` pixels wide (narrower where it would be more than 9/8 as high), seen from far along the axis `along`, coloured by one of grain_colours.COLOURINGS. The file appears when it is
-    complete. Grains of a periodic cell are drawn within it.
+    """Write the states of a RunFolder as a film, seen from far along an axis; the file appears when it is complete.
 
-    NoFilm when ffmpeg is missing or fails, RunFolderError when a state is damaged or there is none."""
+    Parameters
+    ----------
+    run : RunFolder
+    file : Path
+        With one of ENDINGS: H.264 in that container, or a .gif that repeats.
+    frames_per_second : float
+    width : int
+        In pixels; less where the film would be more than 9/8 as high.
+    along : str
+        Axis, one of AXES. Grains of a periodic cell are drawn within it.
+    colour : str
+        One of grain_colours.COLOURINGS.
+
+    Raises
+    ------
+    NoFilm
+        If ffmpeg is missing or fails.
+    RunFolderError
+        If a state is damaged, or there is none.
+    """
     if file.suffix not in ENDINGS:  # before the frames are drawn
         raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
     if file.suffix == ".gif" and frames_per_second > _FASTEST_GIF:
@@ -146,29 +163,24 @@ def _frames_in(file):
 
 def _encode(frames, file, frames_per_second):
     """Through ffmpeg's input; NoFilm with its last line when it fails."""
+    if not shutil.which("ffmpeg"):
+        raise NoFilm("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)")
     first = next(frames)
     size = f"{first.shape[1]}x{first.shape[0]}"
     command = ["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size]
     command += ["-r", str(frames_per_second), "-i", "-", *(_GIF if file.endswith(".gif") else _H264), file]
     with tempfile.TemporaryFile() as messages:
-        encoder = None
+        encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
         try:
-            with held():  # an encoder that nobody knows would write on
-                encoder = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=messages)
-            encoder.stdin.write(first.tobytes())
-            for frame in frames:
+            for frame in chain([first], frames):
                 encoder.stdin.write(frame.tobytes())
-        except FileNotFoundError:
-            raise NoFilm("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)") from None
         except BrokenPipeError:
             pass  # it says why below
         except BaseException:
-            if encoder:
-                encoder.kill()
+            encoder.kill()
             raise
         finally:
-            if encoder:
-                encoder.communicate()
+            encoder.communicate()
         messages.seek(0)
         lines = messages.read().decode(errors="replace").strip().splitlines()
     if encoder.returncode:

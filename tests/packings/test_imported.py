@@ -12,7 +12,7 @@ from running import make_packing
 from scenes import *
 from written_runs import losing, record, state_arrays, write_run
 
-from analysis.export.vtk_xml import poly_data
+from analysis.export.formats import poly_data
 from analysis.measures.fragments import fragment_labels
 from analysis.runs.files import npz
 from analysis.theory.compression import rolling_energy

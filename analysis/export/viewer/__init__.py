@@ -1,4 +1,5 @@
-"""A page on which a run's aggregates can be turned: one HTML file with the states and three.js in it, which needs no network."""
+"""A page on which a run's aggregates can be turned: one HTML file with the states and three.js in it, which needs no
+network."""
 
 import base64
 import json
@@ -27,8 +28,8 @@ class NoThree(Exception):
 def write_view(run, file, three=THREE):
     """Write the states of a RunFolder as a page of HTML; returns `file`.
 
-    three: folder of three.js (r110 to r147) with build/three.min.js and examples/js/controls/OrbitControls.js. NoThree when it lacks them,
-    RunFolderError when a state is damaged or there is none, OSError."""
+    three: folder of three.js (r110 to r147) with build/three.min.js and examples/js/controls/OrbitControls.js.
+    NoThree when it lacks them, RunFolderError when a state is damaged or there is none, OSError."""
     require_output(file)
     scripts = _scripts(Path(three))
     page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
@@ -47,13 +48,13 @@ def _scripts(three):
     try:
         return [(three / name).read_text(encoding="utf-8") for name in _SCRIPTS]
     except OSError as error:
-        raise NoThree(
-            f"{error.filename}: {error.strerror}; three.js must be there (apt-get install libjs-three, or --three FOLDER)"
-        ) from None
+        need = "three.js must be there (apt-get install libjs-three, or --three FOLDER)"
+        raise NoThree(f"{error.filename}: {error.strerror}; {need}") from None
 
 
 def _data(run):
-    """What the page shows, for JSON: arrays in base64, little-endian. Lengths in grain radii about the middle of the start."""
+    """What the page shows, for JSON: arrays in base64, little-endian. Lengths in grain radii about the middle of the
+    start."""
     first = run.start
     unit, cell = float(first.radius.max()), first.cell_size
     origin = (first.position.min(axis=0) + first.position.max(axis=0)) / 2 if cell is None else cell / 2

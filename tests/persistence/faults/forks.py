@@ -12,7 +12,7 @@ from yade_server import YadeServer
 HERE = Path(__file__).parent
 # What programs import: once, before they are forked.
 MODULES = """contact_law analysis.figures analysis.atlas.model analysis.atlas.outcome_table analysis.atlas.scores analysis.commands.study
-analysis.export.extended_xyz analysis.export.film analysis.export.viewer analysis.export.vtk_series yade_scripts.experiments.collision
+analysis.export.film analysis.export.formats analysis.export.viewer yade_scripts.experiments.collision
 yade_scripts.experiments.compression yade_scripts.run.checkpoint_writer yade_scripts.run.loop yade_scripts.run.recorder
 yade_scripts.run.report yade_scripts.run.scene yade_scripts.run.script""".split()
 # As in injector.c.
