@@ -1,11 +1,11 @@
 """Andrews's model of two equal elastoplastic spheres that collide head on (A24 eqs 23-33, appendix B).
 
-delta is the compression length, R* = R_eff/2 the reduced radius, rho the density of a sphere, sigma the yield
-stress, E* the reduced Young's modulus, delta_c the compression at yield. All integrals of the model are
-closed, and are used in that form; they scale as delta ~ R* and time ~ R*/v.
+delta is the compression length, R* = R_eff/2 the reduced radius, rho the density of a sphere, sigma the yield stress,
+E* the reduced Young's modulus, delta_c the compression at yield. All integrals of the model are closed, and are used
+in that form; they scale as delta ~ R* and time ~ R*/v.
 
-Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 what it makes of B21, B22; the
-force is continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
+Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 what it makes of B21, B22; the force is
+continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
 
 - eq 18 prints delta_offset = c2 r/(2 - c1/2). Eqs 14, 15, 17 and 19 give c2 r/(2 - c1), and only that gives
   the printed 0.271 r (the printed form gives 0.267 r). studies.elastoplastic uses that.
@@ -23,8 +23,8 @@ from scipy.special import hyp2f1
 
 @dataclass(frozen=True)
 class Spheres:
-    """R* [m], density rho [kg/m^3], yield stress sigma [Pa] and E* [Pa]: floats, or arrays that broadcast.
-    sigma = inf is Hertz's elastic sphere, E* = inf the rigid-plastic one."""
+    """R* [m], density rho [kg/m^3], yield stress sigma [Pa] and E* [Pa]: floats, or arrays that broadcast. sigma =
+    inf is Hertz's elastic sphere, E* = inf the rigid-plastic one."""
 
     reduced_radius: float
     density: float
@@ -89,8 +89,8 @@ def time_of_largest_compression(velocity, spheres):
 
 
 def restitution(velocity, spheres):
-    """Coefficient of restitution: (work given back/K_ini)^(1/2), 1 where nothing yields. The same for every
-    size (A24 section 5.3)."""
+    """Coefficient of restitution: (work given back/K_ini)^(1/2), 1 where nothing yields. The same for every size (A24
+    section 5.3)."""
     critical = critical_compression(spheres)
     rigid = plastic_compression(velocity, spheres)
     elastic = _stays_elastic(critical, rigid)

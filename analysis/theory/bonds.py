@@ -1,4 +1,4 @@
-"""The bond of two equal sintered grains (S17 section 3), S17 = Sirono & Ueno 2017."""
+"""The bond of two equal sintered grains (Sirono & Ueno 2017, S17, section 3). neck: beta, its radius over theirs."""
 
 from dataclasses import dataclass
 from math import pi
@@ -8,7 +8,7 @@ from .pair_constants import Material
 
 @dataclass(frozen=True)
 class BondConstants:
-    """Constants of a sintered bond, SI. Field by field names of the plugin's bondConstants(), written with underscores."""
+    """Constants of a sintered bond, SI: field by field those of the plugin's bondConstants(), with underscores."""
 
     neck_radius: float  # a [m]
     neck_length: float  # d [m], S17 eqs 1, 2
@@ -18,17 +18,27 @@ class BondConstants:
 
 
 def bond_constants(material: Material, radius: float, neck: float) -> BondConstants:
-    """BondConstants of two grains of a radius [m] before they sintered; neck: beta, the neck's radius over theirs.
-
-    An elastic disk of radius a and length d; a fillet of radius x = beta^2/(2 (1 - beta)) grain radii bounds it.
-    """
-    fillet = neck**2 / (2.0 * (1.0 - neck))
-    length = 2.0 * radius * fillet / (1.0 + fillet)
-    area = pi * (neck * radius) ** 2
+    """BondConstants of two grains of a radius [m] before they sintered: of an elastic disk of radius a and length d."""
+    area, length = pi * (neck * radius) ** 2, neck_length(neck, radius)
     return BondConstants(
         neck_radius=neck * radius,
         neck_length=length,
         normal_stiffness=area * material.young / length,
         sliding_stiffness=area * material.shear / length,
-        breaking_energy=area * material.surface_energy,
+        breaking_energy=breaking_energy(neck, radius, material.surface_energy),
     )
+
+
+def neck_length(neck, radius):
+    """d [m] of a neck, bounded by a fillet of radius beta^2/(2 (1 - beta)) grain radii: S17 eqs 1, 2.
+
+    >>> round(neck_length(0.5, 1.0), 6)
+    0.4
+    """
+    fillet = neck**2 / (2.0 * (1.0 - neck))
+    return 2.0 * radius * fillet / (1.0 + fillet)
+
+
+def breaking_energy(neck, radius, surface_energy):
+    """E_sint = pi gamma (beta R)^2 [J]: S17 eq 6."""
+    return pi * (neck * radius) ** 2 * surface_energy

@@ -1,35 +1,23 @@
 """When sintered aggregates bounce: the chain model of Sirono & Ueno (2017, S17) section 5.4, eqs 14 to 19.
 
-An aggregate is a triangular lattice of chains of N grains; a chain is bent to a triangle with a base L and a height L/2.
-It bounces where the largest force in a chain is above the pull-off force of an unsintered contact. Lengths in m.
+An aggregate is a triangular lattice of chains of N grains; a chain is bent to a triangle with a base L and a height
+L/2. It bounces where the largest force in a chain is above the pull-off force of an unsintered contact. Lengths in m.
 
-Eq 14 is printed with the denominator 2R - 1 and eq 17 with L/(2R - 1), which have no sensible unit. Here both are L/(2R) - 1,
-and eq 17's length is in units of R: then F_c/F_max is 0.75 for N = 22, beta = 0.7, 10 m/s (Fig. 17 right, the square: "almost
-unity"), and V_g = 3 m/s bounces from beta = 0.2 on if its grains have 2.36 contacts or more. In units of 2R all ratios double."""
+Eq 14 is printed with the denominator 2R - 1 and eq 17 with L/(2R - 1), which have no sensible unit. Here both are
+L/(2R) - 1, and eq 17's length is in units of R: then F_c/F_max is 0.75 for N = 22, beta = 0.7, 10 m/s (Fig. 17 right,
+the square: "almost unity"), and V_g = 3 m/s bounces from beta = 0.2 on if its grains have 2.36 contacts or more. In
+units of 2R all ratios double."""
 
 from math import pi, sqrt
 
 import numpy as np
 
-
-def neck_thickness(beta, radius):
-    """d [m] of a neck of radius beta R, S17 eqs 1, 2; radius: R [m].
-
-    >>> round(neck_thickness(0.5, 1.0), 6)
-    0.4
-    """
-    fillet = beta**2 * radius / (2.0 * (1.0 - beta))
-    return 2.0 * radius * fillet / (radius + fillet)
+from .bonds import neck_length
 
 
 def rolling_stiffness(beta, radius, young):
     """k_sr [N m] of a neck, S17 eq 5."""
-    return pi * (beta * radius) ** 4 * young / (4.0 * neck_thickness(beta, radius))
-
-
-def breaking_energy(beta, radius, surface_energy):
-    """E_sint = pi gamma (beta R)^2 [J], S17 after eq 6."""
-    return pi * surface_energy * (beta * radius) ** 2
+    return pi * (beta * radius) ** 4 * young / (4.0 * neck_length(beta, radius))
 
 
 def chain_of_contacts(contacts):
@@ -41,7 +29,7 @@ def chain_of_contacts(contacts):
 
 
 def chain_stiffness(grains, beta, radius, young):
-    """k_chain [N/m] of N = `grains` > 3, S17 eq 17 (see the module): softer the longer the chain; 0 for infinite ones."""
+    """k_chain [N/m] of N = `grains` > 3, S17 eq 17 (see the module): softer the longer the chain; 0 at infinity."""
     grains = np.asarray(grains, dtype=float)
     if np.any(grains <= 3):
         raise ValueError(f"grains = {grains}: must be above 3, the pole of S17 eq 17")
@@ -66,6 +54,6 @@ def sticking_ratio(velocity, grains, beta, radius, young, mass, surface_energy):
 
 
 def stretching_period(pair):
-    """Period [s] of two equal grains that vibrate along an unsintered contact, S17's unit of time; pair: PairConstants. At
-    equilibrium dF/d(delta) = (6/5) F_c/delta_0 (S17 eqs 8, 9)."""
+    """Period [s] of two equal grains that vibrate along an unsintered contact, S17's unit of time; pair:
+    PairConstants. At equilibrium dF/d(delta) = (6/5) F_c/delta_0 (S17 eqs 8, 9)."""
     return 2.0 * pi * sqrt(pair.reduced_mass * pair.equilibrium_overlap / (1.2 * pair.pull_off_force))

@@ -1,9 +1,7 @@
-"""JKR normal motion: contact radius, force and energy as functions of the overlap (A22 eqs 2-11, A24 eqs
-5-7).
+"""JKR normal motion: contact radius, force and energy as functions of the overlap (A22 eqs 2-11, A24 eqs 5-7).
 
-With u = (a/a0)^(1/2) the overlap in units of delta0 is D = 3 u^4 - 2 u (A22 eq 2). A contact lives on the
-branch u >= u_c = 6^(-1/3), where D = -(9/16)^(1/3) is the pull-off (A22 eq 3). Measured from there, with w =
-u - u_c,
+With u = (a/a0)^(1/2) the overlap in units of delta0 is D = 3 u^4 - 2 u (A22 eq 2). A contact lives on the branch u >=
+u_c = 6^(-1/3), where D = -(9/16)^(1/3) is the pull-off (A22 eq 3). Measured from there, with w = u - u_c,
 
     D + (9/16)^(1/3) = w^2 (18 u_c^2 + 12 u_c w + 3 w^2)
 
@@ -28,8 +26,7 @@ def _cube_root_of_9_16():
 
 
 PULL_OFF_OVERLAP, _PULL_OFF_REST = _cube_root_of_9_16()
-# An overlap of -delta_c, divided by delta0, may round to just beyond the pull-off: that much is not a
-# separation.
+# An overlap of -delta_c, divided by delta0, may round to just beyond the pull-off: that much is not a separation.
 _ROUNDING = 4e-16
 
 
@@ -43,8 +40,7 @@ def _root_from_distance(distance):
     c2, c3, c4 = 18.0 * U_PULL_OFF**2, 12.0 * U_PULL_OFF, 3.0
     with np.errstate(invalid="ignore"):
         s = np.sqrt(distance)
-    # s = w (c2 + c3 w + c4 w^2)^(1/2) is convex and rises: Newton's steps from above come down to the root
-    # and stay.
+    # s = w (c2 + c3 w + c4 w^2)^(1/2) is convex and rises: Newton's steps from above come down to the root and stay.
     w = np.minimum(s / np.sqrt(c2), np.sqrt(s / np.sqrt(c4)))
     for _ in range(6):
         q = np.sqrt(c2 + w * (c3 + w * c4))
@@ -53,14 +49,13 @@ def _root_from_distance(distance):
 
 
 def contact_radius_root(normalised_overlap):
-    """u = (a/a0)^(1/2) for an overlap D = delta/delta0 (any shape); NaN where D is beyond the pull-off. A22
-    eq 2, inverted."""
+    """u = (a/a0)^(1/2) for an overlap D = delta/delta0 (any shape); NaN where D is beyond the pull-off. A22 eq 2,
+    inverted."""
     return _root_from_distance(_distance_from_pull_off(normalised_overlap))
 
 
 def normalised_force(normalised_overlap):
-    """F_E/F_c (positive = repulsive) for D = delta/delta0 (any shape); 0 where the grains are apart. A22 eq
-    5."""
+    """F_E/F_c (positive = repulsive) for D = delta/delta0 (any shape); 0 where the grains are apart. A22 eq 5."""
     u = contact_radius_root(normalised_overlap)
     return np.where(np.isnan(u), 0.0, 4.0 * u**3 * (u - 1.0) * (u * u + u + 1.0))[()]
 
@@ -72,8 +67,8 @@ def normalised_energy(normalised_overlap):
 
 
 def normalised_stiffness(normalised_overlap):
-    """d(F_E/F_c)/dD for D = delta/delta0 (any shape): (24 u^5 - 12 u^2)/(12 u^3 - 2), infinite at the
-    pull-off, 0 apart."""
+    """d(F_E/F_c)/dD for D = delta/delta0 (any shape): (24 u^5 - 12 u^2)/(12 u^3 - 2), infinite at the pull-off, 0
+    apart."""
     u = contact_radius_root(normalised_overlap)
     slope = 2.0 * (6.0 * u**3 - 1.0)
     with np.errstate(divide="ignore"):
@@ -81,8 +76,8 @@ def normalised_stiffness(normalised_overlap):
 
 
 def contact_radius(overlap, pair):
-    """Contact radius a [m] for an overlap [m] (any shape) of a PairConstants; 0 where the grains are apart.
-    A22 eq 2."""
+    """Contact radius a [m] for an overlap [m] (any shape) of a PairConstants; 0 where the grains are apart. A22 eq
+    2."""
     u = contact_radius_root(np.asarray(overlap) / pair.equilibrium_overlap)
     return np.where(np.isnan(u), 0.0, pair.equilibrium_contact_radius * u * u)[()]
 

@@ -1,9 +1,9 @@
 """What two materials and two radii make of a contact (A22 eqs 1, 3, 6, 7, 14-26; K13 eq 2).
 
-Unlike grains: 1/R = 1/r1 + 1/r2, 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G, 1/G' = sum 1/G; the surface
-energy is the geometric mean, the critical rolling displacement and the viscous coefficient T_vis/nu^2 are
-arithmetic means; zeta_crit = (G'/G*) a0/(16 pi), which is (2 - nu) a0/(16 pi) for equal materials; the time
-unit is that of two equal grains of the same reduced radius and reduced mass (r = 2 R, m = 2 m*)."""
+Unlike grains: 1/R = 1/r1 + 1/r2, 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G, 1/G' = sum 1/G; the surface energy
+is the geometric mean, the critical rolling displacement and the viscous coefficient T_vis/nu^2 are arithmetic means;
+zeta_crit = (G'/G*) a0/(16 pi), which is (2 - nu) a0/(16 pi) for equal materials; the time unit is that of two equal
+grains of the same reduced radius and reduced mass (r = 2 R, m = 2 m*)."""
 
 from dataclasses import dataclass
 from math import pi, sqrt
@@ -11,8 +11,7 @@ from math import pi, sqrt
 
 @dataclass(frozen=True)
 class Material:
-    """Young's modulus [Pa], Poisson's ratio, density [kg/m^3], surface energy [J/m^2], xi_crit [m], T_vis
-    [s]."""
+    """Young's modulus [Pa], Poisson's ratio, density [kg/m^3], surface energy [J/m^2], xi_crit [m], T_vis [s]."""
 
     young: float
     poisson: float
@@ -65,17 +64,17 @@ class PairConstants:
 
 
 def time_unit(density, radius, reduced_young, surface_energy):
-    """t0 [s] = 0.95 rho^(1/2) r^(7/6) E*^(-1/3) gamma^(-1/6): K13 eq 2, with E* where E is printed (density
-    [kg/m^3], radius [m], E* [Pa], surface energy [J/m^2])."""
+    """t0 [s] = 0.95 rho^(1/2) r^(7/6) E*^(-1/3) gamma^(-1/6): K13 eq 2, with E* where E is printed (density [kg/m^3],
+    radius [m], E* [Pa], surface energy [J/m^2])."""
     return 0.95 * density**0.5 * radius ** (7.0 / 6.0) / (reduced_young ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
 
 
 def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0):
-    """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is
-    left out, and is a plane where radius2 is infinite.
+    """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is left out,
+    and is a plane where radius2 is infinite.
 
-    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both
-    dimensionless. Sources: the module's head and PairConstants.
+    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both dimensionless.
+    Sources: the module's head and PairConstants.
     """
     material2 = material1 if material2 is None else material2
     radius2 = radius1 if radius2 is None else radius2
@@ -117,8 +116,8 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
 def interaction_energies(pair):
     """The energies of A22 Table 2 [J] as a dict.
 
-    unit F_c delta_c (eqs 3, 6), break (12), roll_critical (15), roll (16), slide_critical (20), slide (21:
-    the product; the printed number is pi times it), twist_critical (25), twist (26)."""
+    unit F_c delta_c (eqs 3, 6), break (12), roll_critical (15), roll (16), slide_critical (20), slide (21: the
+    product; the printed number is pi times it), twist_critical (25), twist (26)."""
     unit = pair.pull_off_force * pair.pull_off_overlap
     rolling, sliding, twisting = pair.rolling_stiffness, pair.sliding_stiffness, pair.twisting_stiffness
     quarter_turn = pi * pair.reduced_radius

@@ -1,8 +1,7 @@
 """Head-on collision of two grains with JKR force and drag (A22 eqs 4-10 and 30), integrated to high accuracy.
 
-Units inside: overlap in delta0, velocity in (F_c delta0/m*)^(1/2), time in (m* delta0/F_c)^(1/2). The overlap
-is counted from the pull-off, h = delta/delta0 + (9/16)^(1/3), where the force has its square-root branch
-point."""
+Units inside: overlap in delta0, velocity in (F_c delta0/m*)^(1/2), time in (m* delta0/F_c)^(1/2). The overlap is
+counted from the pull-off, h = delta/delta0 + (9/16)^(1/3), where the force has its square-root branch point."""
 
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
@@ -20,9 +19,8 @@ _LONGEST = 1e4  # in time units: far longer than any collision, a guard against 
 
 @dataclass(frozen=True)
 class PairCollision:
-    """Outcome of a head-on collision: sticks, rebound_velocity [m/s] (0 when it sticks), restitution (rebound
-    over impact velocity), duration [s] from first contact to separation (infinite when it sticks),
-    largest_overlap [m]."""
+    """Outcome of a head-on collision: sticks, rebound_velocity [m/s] (0 when it sticks), restitution (rebound over
+    impact velocity), duration [s] from first contact to separation (infinite when it sticks), largest_overlap [m]."""
 
     sticks: bool
     rebound_velocity: float
@@ -63,19 +61,19 @@ class _PairMotion:
 
 
 def sticking_velocity_without_drag(pair):
-    """Largest impact velocity [m/s] at which two perfectly elastic grains stick, closed form: the kinetic
-    energy at first contact equals what connection and disconnection take, m* v^2/2 = (8/15 2^(2/3) + 4/45)
-    F_c delta_c (A22 eqs 9, 10)."""
+    """Largest impact velocity [m/s] at which two perfectly elastic grains stick, closed form: the kinetic energy at
+    first contact equals what connection and disconnection take, m* v^2/2 = (8/15 2^(2/3) + 4/45) F_c delta_c (A22 eqs
+    9, 10)."""
     lost = (ENERGY_AT_PULL_OFF - ENERGY_AT_CONTACT) * pair.pull_off_force * pair.pull_off_overlap
     return sqrt(2.0 * lost / pair.reduced_mass)
 
 
 def sticking_velocity(pair):
-    """Largest impact velocity [m/s] at which a head-on pair sticks, with the pair's drag; infinite when it
-    always sticks.
+    """Largest impact velocity [m/s] at which a head-on pair sticks, with the pair's drag; infinite when it always
+    sticks.
 
-    The threshold trajectory arrives at the pull-off at rest, and only one does: it is followed backward in
-    time from there (A22 eq 30) to the first contact, delta = 0, where its velocity is the threshold."""
+    The threshold trajectory arrives at the pull-off at rest, and only one does: it is followed backward in time from
+    there (A22 eq 30) to the first contact, delta = 0, where its velocity is the threshold."""
     motion = _PairMotion(pair)
 
     first_contact = _event(lambda _, state: state[0] - PULL_OFF_OVERLAP)
@@ -107,11 +105,9 @@ def _compress(motion, start):
 
 
 def collide_pair(velocity, pair):
-    """PairCollision of two grains meeting head-on with relative velocity [m/s] > 0 (A22 eq 30); ValueError
-    otherwise.
+    """PairCollision of two grains meeting head-on with relative velocity [m/s] > 0 (A22 eq 30); ValueError otherwise.
 
-    Separation is at delta = -delta_c; the pair has stuck as soon as its energy no longer reaches the
-    pull-off."""
+    Separation is at delta = -delta_c; the pair has stuck as soon as its energy no longer reaches the pull-off."""
     motion, start = _start(velocity, pair)
     time_in, top = _compress(motion, start)
     largest = (top[0] - PULL_OFF_OVERLAP) * motion.length
@@ -126,8 +122,7 @@ def collide_pair(velocity, pair):
 
 
 def pair_motion(velocity, pair, times):
-    """Overlap [m] (T,) and its rate [m/s] (T,) of a head-on pair at times [s] (T,) after first contact (A22
-    eq 30).
+    """Overlap [m] (T,) and its rate [m/s] (T,) of a head-on pair at times [s] (T,) after first contact (A22 eq 30).
 
     velocity [m/s] > 0 is the relative velocity at first contact; after a separation both are NaN.
     """

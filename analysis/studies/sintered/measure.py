@@ -11,7 +11,8 @@ from ...measures.of_run import derived_constants
 from ...measures.structure import gyration_radius
 from ...runs.format import BROKEN_BONDS
 from ...runs.table import Column
-from ...theory.chains import breaking_energy, stretching_period
+from ...theory.bonds import breaking_energy
+from ...theory.chains import stretching_period
 from ...theory.pair_constants import ICE, pair_constants
 from ..columns import CLOSURE, END, GRAIN_RADIUS, MET, OUTCOME, VELOCITY, VISCOUS_TIME, constant, group, parameter
 from ..definition import NotMeasured
