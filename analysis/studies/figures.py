@@ -1,6 +1,6 @@
 """The figures of studies: curves of estimates beside what a paper has, and states of collisions."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +9,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from ..figures.collision import draw_view, reach
 from ..figures.style import legend, letter, panels, styled
 from ..runs.files import read_arrays
-from ..runs.table import NoRunFolder, run_folder
+from ..runs.folder import open_run
 
 COLOURS = ("#2166ac", "#e08214", "#1b8a8f", "#c62828", "#8c5a2b", "#d16ba5", "#111111")  # none the paper's
 MARKERS = "osD^vP*"
@@ -132,52 +132,49 @@ class Snapshot:
 
 
 @styled
-def snapshots(collisions, kept):
-    """Figure of states of collisions, a row of panels each; every panel has its own scale, with a bar in grain radii.
+def snapshots(runs, folder, title):
+    """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each: their states at these times where
+    their run folders are at hand, else those that are kept. Every panel has its own scale, with a bar in grain radii.
 
     Parameters
     ----------
-    collisions : list
-        (row of the table of runs (itertuples), title, times (T,) [s]) of each: the saved states that are nearest.
-    kept : Path
-        Folder of the states that the gallery keeps, where no run folder is at hand.
+    runs : DataFrame
+        With `run`, `folder` and `grain_radius`.
+    folder : Path
+    title : callable
+        From a row of the table (itertuples) to the title of its panels.
 
     Returns
     -------
     Figure or None
-        None without collisions, or where their states are not at hand.
+        None where no such run is in the table.
     """
-    try:
-        rows = [(title, _states(row, times, kept), row.grain_radius) for row, title, times in collisions]
-    except NoRunFolder:
-        return None
+    files = {file.stem: file for file in sorted(Path(folder).glob("*.npz"))}
+    rows = [row for row in runs.itertuples() if row.run in files]
     if not rows:
         return None
-    figure, axes = panels(len(rows), max(len(states) for _, states, _ in rows), 2.7, 2.75)
-    for places, (title, states, radius) in zip(axes, rows):
+    shown = [_states(row, files[row.run]) for row in rows]
+    figure, axes = panels(len(rows), max(map(len, shown)), 2.7, 2.75)
+    for places, row, states in zip(axes, rows, shown):
         for place, state in zip(places, states):
-            centre = state.position.mean(axis=0)
-            moved = Snapshot(state.time, state.position - centre, state.radius, state.aggregate)
-            half = 1.05 * reach(moved, HELD) / radius
-            draw_view(place, moved, radius, half)
+            centred = replace(state, position=state.position - state.position.mean(axis=0))
+            half = 1.05 * reach(centred, HELD) / row.grain_radius
+            draw_view(place, centred, row.grain_radius, half)
             bar = max(n * 10**k for n in (1, 2, 5) for k in range(5) if n * 10**k <= max(0.6 * half, 1))
             place.plot([-0.92 * half, -0.92 * half + bar], [-0.92 * half] * 2, color="0.1", lw=2.5)
             place.text(-0.92 * half, -0.88 * half, f"{bar:g} $r$", fontsize=8, va="bottom")
         for place in places[len(states) :]:
             place.set_axis_off()
-        places[0].set_title(title, fontsize=9, loc="left")
+        places[0].set_title(title(row), fontsize=9, loc="left")
     return figure
 
 
-def _states(row, times, kept):
+def _states(row, file):
+    kept = read_arrays(file, ("time", "unit", "position", "radius", "aggregate"))
     if isinstance(row.folder, str):
-        states = run_folder(row).states
-        found = [states[k] for k in sorted({states.nearest(time) for time in times})]
+        states = open_run(row.folder).states
+        found = [states[k] for k in sorted({states.nearest(time) for time in kept["time"]})]
         return [Snapshot(own.time, own.position, own.radius, own.aggregate) for own in found]
-    file = Path(kept) / f"{row.run}.npz"
-    if not file.is_file():
-        raise NoRunFolder(row.run)
-    arrays = read_arrays(file, ("time", "unit", "position", "radius", "aggregate"))
-    positions = arrays["position"] * float(arrays["unit"])
-    radius, aggregate = arrays["radius"].astype(float), arrays["aggregate"].astype(int)
-    return [Snapshot(float(time), position, radius, aggregate) for time, position in zip(arrays["time"], positions)]
+    positions, radius = kept["position"] * float(kept["unit"]), kept["radius"].astype(float)
+    of_all = radius, kept["aggregate"].astype(int)
+    return [Snapshot(float(time), position, *of_all) for time, position in zip(kept["time"], positions)]

@@ -13,7 +13,7 @@ from .comparison import LEGEND, as_text, counted, markdown_table
 from .study import GALLERY
 
 START, END = "<!-- table: made by `make gallery` -->", "<!-- end of the table -->"
-NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)? ± \d+(?:\.\d+)?")
+NUMBER = re.compile(r"\d+(?:\.\d+)? ± \d+(?:\.\d+)?")
 STYLE = """body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.8rem; }
 th, td { padding: 0.15rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }"""
@@ -52,10 +52,11 @@ def filled(file, text, rows, independent):
 
 
 def require_numbers(file, text, made):
-    """PageError where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str])."""
+    """PageError where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str]), but for
+    its sign."""
     known = {own for number in made for own in NUMBER.findall(number)}
     for number in NUMBER.findall(text):
-        if number.replace("−", "-") not in known:
+        if number not in known:
             raise PageError(f"{file}: {number}: no study has this number; must be one of comparison.csv")
 
 

@@ -321,13 +321,8 @@ def figures(runs):
     look = {"log": "x", "x_label": "$v$ [m/s]", "y_label": r"$\langle f_{gro} \rangle$", "paper": paper}
     figure = curves(runs, partial(estimate, over_offsets()), "velocity", **by, **look)
     yield "fig03_mean_growth", "A22 Fig. 3: growth efficiency, mean over 13 offsets, against velocity.", figure
-    shown = where(runs, grains=2000, **REFERENCE)
-    shown = shown[(shown.seed == shown.seed.min()) & shown.viscoelasticTime.isin((0.0, DRAG))]
-    papers = np.array([0.0, 0.32, 0.63, 1.27, 6.34]) * 1e-6 / 72.27  # s, of aggregates of one grain radius
-    times = lambda row: row.characteristic_radius / row.grain_radius * papers
-    figure = snapshots([(row, row.drag, times(row)) for row in shown.itertuples()], GALLERY / "viscous" / "snapshots")
     caption = "A22 Fig. 1 with 2,000 grains each, 50.1 m/s, B_off² = 3/12, at its times in proportion to the radii."
-    yield "fig01_snapshots", caption, figure
+    yield "fig01_snapshots", caption, snapshots(runs, GALLERY / "viscous" / "snapshots", lambda row: row.drag)
 
 
 STUDY = Study(

@@ -140,17 +140,16 @@ def test_a_page_must_be_html_and_what_others_wrote_stays(own, capsys):
 
 
 def test_snapshots_are_drawn_from_run_folders_and_from_what_is_kept(own):
-    table = pandas.DataFrame({"run": ["s1"], "folder": [str(own / "runs" / "s1")], "grain_radius": 1e-7})
-    figure = lambda rows: snapshots([(row, "one", [0.0, 1.0]) for row in rows.itertuples()], own / "kept")
-    assert len(figure(table).axes) == 2
-    assert figure(table.assign(folder=None)) is None  # not at hand
     states = [open_run(own / "runs" / "s1").states[k] for k in (0, -1)]
-    (own / "kept").mkdir()
     position = np.array([state.position for state in states])
     unit = np.abs(position).max() / 32_000
     kept = dict(time=[0.0, 1.0], unit=unit, position=np.rint(position / unit).astype(np.int16))
+    (own / "kept").mkdir()
     np.savez(own / "kept" / "s1.npz", **kept, radius=states[0].radius, aggregate=states[0].aggregate)
-    assert len(figure(table.assign(folder=None)).axes) == 2
+    runs = pandas.DataFrame({"run": ["s1"], "folder": [str(own / "runs" / "s1")], "grain_radius": 1e-7})
+    for table in (runs, runs.assign(folder=None)):
+        assert len(snapshots(table, own / "kept", lambda row: row.run).axes) == 2
+    assert snapshots(runs.assign(run="s2"), own / "kept", lambda row: row.run) is None
 
 
 @pytest.mark.parametrize("name", NAMES)
