@@ -11,9 +11,9 @@ from .estimates import Estimate
 
 AGREES, DIFFERS, UNCLEAR, NOT_RUN = "agrees", "differs", "unclear", "not run"
 LEGEND = (
-    "Ours: mean ± standard error (independent {}); difference: in combined standard errors. *Agrees*: within two, and "
-    "the error is below a quarter of the number (or of the limits' width); of a one-sided limit: on its side by two "
-    "errors. *Differs*: beyond three. *Unclear*: all else."
+    "Ours: mean ± standard error (independent {}); difference in combined standard errors. *Agrees*: within two, these "
+    "below a quarter of the number (of the limits' width; of a one-sided limit: on its side by two). *Differs*: beyond "
+    "three. *Unclear*: all else."
 )
 
 
@@ -132,8 +132,8 @@ def counted(rows):
         return ""
     parts = ", ".join(f"{words[word]} {word}" for word in (AGREES, DIFFERS, UNCLEAR, NOT_RUN))
     return (
-        f"Numbers and statements of the paper: {sum(words.values())} ({parts}). By chance alone {0.0455 * numbers:.1f} of "
-        f"{numbers} would lie beyond two errors and {0.0027 * numbers:.1f} beyond three, somewhat more with few pairs."
+        f"All {sum(words.values())} comparisons: {parts}. By chance alone {0.0455 * numbers:.1f} of {numbers} would lie "
+        f"beyond two errors, {0.0027 * numbers:.1f} beyond three."
     )
 
 
