@@ -6,7 +6,7 @@ from math import nan, pi
 import numpy as np
 from scipy.optimize import brentq
 
-from ..figures.panels import PAPER
+from ..figures.style import PAPER
 from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.ledger import fractions_at
 from ..measures.network import loops
