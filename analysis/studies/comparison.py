@@ -35,6 +35,8 @@ class Row:
         Section or equation.
     runs : int, optional
         Independent runs behind the paper's number, which are taken to scatter as ours do; None: it has no error of its own.
+    note : str
+        Why the two are not quite the same thing.
     """
 
     quantity: str
@@ -43,6 +45,7 @@ class Row:
     printed: str = ""
     source: str = ""
     runs: int | None = None
+    note: str = ""
 
     @property
     def limits(self):
@@ -103,6 +106,7 @@ def of_table(rows):
             "text": str(row.ours),
             "difference": row.difference,
             "word": row.word,
+            "note": row.note,
         }
         for row in rows
     ]
