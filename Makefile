@@ -348,8 +348,6 @@ STUDIES := elastoplastic viscous compression sintered compressed atlas
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
 runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE)))
-# All of them: of two with the same numbers the first counts, and undecided runs of the atlas are run again for longer.
-all-runs = $(if $(filter atlas,$1),$(wildcard runs/atlas-longer)) $(call runs,$1)
 
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status tables
 tables:
@@ -357,7 +355,7 @@ tables:
 
 $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
-	@$(PYTHON) -m analysis study $* $(call all-runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
+	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
 
 # Compacted aggregates are made by collisions of their own before the study's.
 study-sintered: grow-sintered
@@ -372,7 +370,7 @@ compressed-packings: all
 	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j $(JOBS)
 	@$(PYTHON) yade_scripts/studies/compressed.py cut
 
-# A script writes the atlas's table, and makes the packings of its rows; compressed ones are cut out of cells.
+# A script writes the atlas's table and makes the packings of its rows; compressed ones are cut out of cells.
 study-atlas: atlas-table
 .PHONY: atlas-table
 atlas-table: all
@@ -384,11 +382,11 @@ atlas-table: all
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
 
-# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand; of the atlas of these alone where they
-# are, since a row of a table comes before a run that went on for longer.
+# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand. The atlas's model is fitted
+# anew between.
 $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
-	@$(PYTHON) -m analysis study $* $(if $(and $(filter atlas,$*),$(wildcard runs/atlas)),,build/$*-runs.csv) $(wildcard $(call all-runs,$*)) --figures analysis/gallery/$*
+	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
 	$(if $(filter atlas,$*),@$(PYTHON) -m analysis.atlas.make && $(PYTHON) -m analysis study $* analysis/gallery/$*/runs.csv --figures analysis/gallery/$*)
 	@$(MAKE) --no-print-directory gallery
 
