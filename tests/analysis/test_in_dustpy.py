@@ -131,17 +131,3 @@ def test_grains_of_another_size_than_meant_give_a_warning(sim, options):
         use_atlas(sim, outcomes_file(GROWN, averaged=True), **options)
     lines = [str(each.message) for each in caught if "use_atlas" in str(each.message)]
     assert len(lines) == bool(options) and all("of the collisions are at present outside" in line for line in lines)
-
-
-def test_wrong_arguments_are_refused(sim):
-    made = table_of(smooth)
-    for options, says in (
-        ({"outside": "mine"}, "outside = mine: must be clamp or dustpy"),
-        ({"grain_radius": 0.1}, "grain_radius: must be"),
-        ({"outcomes": OutcomeTable(made.axes, made.columns[1:], made.values[..., 1:])}, "no column p_sticking"),
-        ({"outcomes": "nosuch.txt"}, "nosuch.txt: No such file or directory"),
-    ):
-        with pytest.raises(ValueError, match=says):
-            use_atlas(sim, **{"outcomes": made, **options})
-    with pytest.raises(ValueError, match="must be called after sim.initialize()"):
-        use_atlas(dustpy.Simulation(verbosity=0), table_of(smooth))
