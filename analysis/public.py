@@ -2,7 +2,7 @@
 # ruff: noqa: F401, I001
 
 from .atlas.query import outcome
-from .measures.compression import compression_length, maximum_compression, mutual_velocity
+from .measures.compression import compression_and_velocity, maximum_compression
 from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses
 from .measures.fragments import fragment_sizes, fragments, growth_efficiency
 from .measures.ledger import closure, fractions_at, total_energy

@@ -26,57 +26,30 @@ class Maximum:
     inside: bool
 
 
-def compression_length(x, aggregate_radius):
-    """Compression length d = 2 R_agg - (x_+ - x_-) [m], x_+ (x_-) being the mean of the x > 0 (x < 0): A24 eqs 10, 11.
-
-    Parameters
-    ----------
-    x : (N,) array
-        Positions along the collision axis from the centre of mass [m]. A grain at 0 belongs to neither side.
-    aggregate_radius : float
-        [m]
-
-    Returns
-    -------
-    float
-        NaN while a side is empty.
-
-    Examples
-    --------
-    >>> compression_length([-3.0, 0.0, 1.0, 2.0], 2.5)
-    0.5
-    """
-    x = numbers("x", x, (None,))
-    return compression_and_velocity(x, x, numbers("aggregate_radius", aggregate_radius, (), least=0))[0]
-
-
-def mutual_velocity(x, x_velocity):
-    """Mutual velocity v = -(v_+ - v_-) [m/s], v_+ (v_-) being the mean of grains with x > 0 (x < 0): A24 eqs 12, 13.
-
-    Parameters
-    ----------
-    x : (N,) array
-        Positions along the collision axis from the centre of mass [m].
-    x_velocity : (N,) array
-        [m/s]
-
-    Returns
-    -------
-    float
-        Positive while the aggregates approach, NaN while a side is empty.
-
-    Examples
-    --------
-    >>> mutual_velocity([-1.0, 1.0], [2.0, -3.0])
-    5.0
-    """
-    x = numbers("x", x, (None,))
-    return compression_and_velocity(x, numbers("x_velocity", x_velocity, x.shape), 0.0)[1]
-
-
 def compression_and_velocity(x, x_velocity, aggregate_radius):
-    """(d [m], v [m/s]) as compression_length and mutual_velocity define them, at the cost of one."""
-    x, x_velocity = np.asarray(x, dtype=float), np.asarray(x_velocity, dtype=float)
+    """Compression length and mutual velocity of two aggregates (A24 eqs 10-13).
+
+    d = 2 R_agg - (x_+ - x_-) and v = -(v_+ - v_-), the means being over grains with x > 0 and x < 0.
+
+    Parameters
+    ----------
+    x, x_velocity : (N,) array
+        Positions [m] and velocities [m/s] along the collision axis from the centre of mass. A grain at 0 is on
+        neither side.
+    aggregate_radius : float [m]
+
+    Returns
+    -------
+    d, v : float
+        [m] and [m/s], positive while approaching; NaN while a side is empty.
+
+    Examples
+    --------
+    >>> compression_and_velocity([-3.0, 0.0, 1.0, 2.0], [2.0, 0.0, -3.0, -3.0], 2.5)
+    (0.5, 5.0)
+    """
+    x = numbers("x", x, (None,))
+    x_velocity = numbers("x_velocity", x_velocity, x.shape)
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")
@@ -92,12 +65,8 @@ def maximum_compression(time, d, v):
 
     Parameters
     ----------
-    time : (T,) array
-        Rising [s].
-    d : (T,) array
-        Compression length [m].
-    v : (T,) array
-        dd/dt [m/s]. Samples where d or v is NaN are left out.
+    time, d, v : (T,) array
+        Rising times [s], compression length [m] and dd/dt [m/s]. Samples where d or v is NaN are left out.
 
     Returns
     -------

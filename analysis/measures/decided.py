@@ -1,5 +1,5 @@
-"""Whether the outcome of a collision is decided: whether neither pieces that may still meet nor contacts that may still
-break could make it another one.
+"""Whether the outcome of a collision is decided: whether neither pieces that may still meet nor contacts that may
+still break could make it another one.
 
 Pieces may meet when the spheres around them do, on straight lines. A piece may break where its two sides move against
 each other with more energy than the contacts between them hold (loose_cuts), and as long as it has not had the time
@@ -32,8 +32,8 @@ CONSTANTS = ("density", "grainRadius", "aggregateRadius", "timeUnit", "pullOffFo
 
 
 def rebound_time(radius, time_unit):
-    """Time [s] from the first touch in which two aggregates of this radius [grain radii] are compressed and part again
-    (A24 section 3); time_unit: t0 [s]."""
+    """Time [s] from the first touch in which two aggregates of this radius [grain radii] are compressed and part
+    again (A24 section 3); time_unit: t0 [s]."""
     return REBOUND_PER_RADIUS * radius * time_unit
 
 
@@ -167,8 +167,8 @@ def _why_meeting(kind, pieces, counted):
 
 
 def loose_cuts(position, velocity, mass, pairs, labels, aggregate, strength):
-    """(pieces (K,), masses (K,) of the smaller sides) of the cuts whose sides move against each other with more kinetic
-    energy than the contacts of the cut hold, the motion of the piece as a rigid body left out.
+    """(pieces (K,), masses (K,) of the smaller sides) of the cuts whose sides move against each other with more
+    kinetic energy than the contacts of the cut hold, the motion of the piece as a rigid body left out.
 
     Cuts go through every contact that alone connects two parts of a piece, and between a piece's grains of either
     aggregate. position, velocity (N,3) [m, m/s], mass (N,) [kg], pairs (M,2) with strength (M,) [J], the energy that

@@ -24,21 +24,10 @@ PIECES = (
 
 
 def fragment_labels(grains, contact_pairs):
-    """Fragment to which each grain belongs.
+    """Fragment to which each grain belongs (N,) int, of N = `grains` grains joined by contact_pairs (M,2).
 
-    Parameters
-    ----------
-    grains : int
-        Their number N.
-    contact_pairs : (M, 2) array of int
+    Number 0 has the most grains, and so on; equally large ones are in the order of their first grain.
 
-    Returns
-    -------
-    (N,) array of int
-        Number 0 has the most grains, and so on; equally large ones are in the order of their first grain.
-
-    Examples
-    --------
     >>> fragment_labels(5, [[1, 2], [2, 4]]).tolist()
     [1, 0, 0, 2, 0]
     """
@@ -52,19 +41,8 @@ def fragment_labels(grains, contact_pairs):
 
 
 def fragment_sizes(labels):
-    """Number of grains of each fragment.
+    """Number of grains (K,) of each fragment, of labels (N,) as fragment_labels returns them.
 
-    Parameters
-    ----------
-    labels : (N,) array of int
-        As fragment_labels returns them.
-
-    Returns
-    -------
-    (K,) array of int
-
-    Examples
-    --------
     >>> fragment_sizes([1, 0, 0]).tolist()
     [2, 1]
     """
@@ -72,22 +50,8 @@ def fragment_sizes(labels):
 
 
 def fragment_masses(labels, mass):
-    """Mass of each fragment.
+    """Mass (K,) of each fragment, of labels (N,) and the grains' mass (N,), in any unit.
 
-    Parameters
-    ----------
-    labels : (N,) array of int
-        As fragment_labels returns them.
-    mass : (N,) array
-        Of the grains, in any unit.
-
-    Returns
-    -------
-    (K,) array
-        In that unit.
-
-    Examples
-    --------
     >>> fragment_masses([1, 0, 0], [8.0, 1.0, 2.0]).tolist()
     [3.0, 8.0]
     """
@@ -119,19 +83,9 @@ def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
 
 
 def growth_efficiency(largest, target, projectile):
-    """Growth efficiency f_gro = (N_lar - N_tar)/N_pro, A22 eq 28.
+    """Growth efficiency (N_lar - N_tar)/N_pro from the numbers of grains of the largest fragment, the target and the
+    projectile, or from their masses: A22 eq 28.
 
-    Parameters
-    ----------
-    largest, target, projectile : array
-        Numbers of grains of the largest fragment, the target and the projectile; of grains of unlike size their masses.
-
-    Returns
-    -------
-    array
-
-    Examples
-    --------
     >>> float(growth_efficiency(30, 20, 10))
     1.0
     """
@@ -140,21 +94,8 @@ def growth_efficiency(largest, target, projectile):
 
 
 def cumulative_grains(sizes, upto):
-    """Number of grains in fragments of at most N grains, N_cum(<= N): A22 eq 32.
+    """Number of grains (G,) in fragments of at most N = upto (G,) grains, from the fragments' grains (K,): A22 eq 32.
 
-    Parameters
-    ----------
-    sizes : (K,) array
-        Grains of each fragment.
-    upto : (G,) array
-        N
-
-    Returns
-    -------
-    (G,) array
-
-    Examples
-    --------
     >>> cumulative_grains([5, 1, 1], [1, 4.9, 5]).tolist()
     [2.0, 2.0, 7.0]
     """
@@ -163,20 +104,8 @@ def cumulative_grains(sizes, upto):
 
 
 def cumulative_cross_section(sizes, upto):
-    """Cross-sections N^(2/3) of the fragments of at most N grains, S_cum(<= N)/S_1: A22 eq 33.
+    """Cross-sections N^(2/3) (G,) of fragments of at most N = upto (G,) grains, over one grain's: A22 eq 33.
 
-    Parameters
-    ----------
-    sizes, upto : (K,) and (G,) array
-        As cumulative_grains.
-
-    Returns
-    -------
-    (G,) array
-        In units of one grain's pi r_1^2.
-
-    Examples
-    --------
     >>> cumulative_cross_section([8, 1, 1], [1, 8]).tolist()
     [2.0, 6.0]
     """
@@ -189,10 +118,8 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
 
     Parameters
     ----------
-    position : (N, 3) array
-        [m]
-    radius : (N,) array
-        [m]
+    position : (N, 3) array [m]
+    radius : (N,) array [m]
     contact_pairs : (M, 2) array of int
     aggregate : (N,) array of int, optional
         1 for grains of the projectile.

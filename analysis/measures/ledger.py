@@ -7,32 +7,19 @@ import numpy as np
 
 from ..runs.format import CHANNELS
 
-# How energy is lost, as the papers group the channels.
+# A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 WAYS = {
-    "rolling": ("rollingDissipation",),
-    "sliding": ("slidingDissipation",),
-    "twisting": ("twistingDissipation",),
-    "contacts": ("connection", "disconnection"),
-    "drag": ("drag",),
-    "bonds": ("bondBreaking",),
+    "rolling": ["rollingDissipation"],
+    "sliding": ["slidingDissipation"],
+    "twisting": ["twistingDissipation"],
+    "contacts": ["connection", "disconnection"],
+    "drag": ["drag"],
 }
 
 
 def total_energy(history):
-    """Sum of all channels, work on boundaries and constraints included: constant for an exact ledger.
+    """Sum of all channels (T,) [J], work on boundaries and constraints included: constant for an exact ledger.
 
-    Parameters
-    ----------
-    history : mapping of (T,) arrays
-        Every channel [J] by name.
-
-    Returns
-    -------
-    (T,) array
-        [J]
-
-    Examples
-    --------
     >>> energies = {"kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
     >>> total_energy({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}).tolist()
     [4.0, 3.0]
@@ -53,22 +40,9 @@ def closure_history(history):
 
 
 def closure(history):
-    """Largest |E(t) - E(0)|/K(0) of a history.
+    """Largest |E(t) - E(0)|/K(0) of a history; None where K(0) = 0. Of a compression, which starts almost at rest, it
+    is work_closure().
 
-    A compression starts almost at rest: work_closure() is its error.
-
-    Parameters
-    ----------
-    history : mapping of (T,) arrays
-        Every channel [J] by name.
-
-    Returns
-    -------
-    float or None
-        None where K(0) = 0.
-
-    Examples
-    --------
     >>> energies = {"kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
     >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies})
     0.25
@@ -103,22 +77,8 @@ def fractions(history):
 
 
 def fractions_at(history, time):
-    """Change of every channel since the start over K(0) at one time, the kinetic channel itself over K(0).
+    """fractions() at one time [s] within the record, linear between samples: a dict of floats, None where K(0) = 0.
 
-    Parameters
-    ----------
-    history : mapping of (T,) arrays
-        `time` [s] and every channel [J] by name.
-    time : float
-        Within the record [s]; linear between samples.
-
-    Returns
-    -------
-    dict of float or None
-        By name; they add up to 1. None where K(0) = 0.
-
-    Examples
-    --------
     >>> energies = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
     >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}, 1.0)["kinetic"]
     0.25

@@ -8,8 +8,8 @@ NEAR = 2.2  # A22's threshold distance of neighbours, in grain radii
 
 
 def pieces_can_meet(position, velocity, radius, labels, time):
-    """Whether two pieces may touch within `time` [s] when every piece moves on with the velocity of its centre of mass:
-    whether the spheres around any two of them meet. Grains of one density.
+    """Whether two pieces may touch within `time` [s] when every piece moves on with the velocity of its centre of
+    mass: whether the spheres around any two of them meet. Grains of one density.
 
     position, velocity (N,3) [m, m/s], radius (N,) [m], labels (N,) as fragments.fragment_labels has them.
     """
@@ -31,8 +31,8 @@ def pieces_that_can_meet(piece, position, velocity, radius, labels, time):
 
 
 def inner_kinetic_energy(position, velocity, mass, labels):
-    """Kinetic energy [J] (K,) of each of K pieces beside that of its motion as a rigid body, the rotation of the grains
-    themselves left out; position, velocity (N,3) [m, m/s], mass (N,) [kg], labels (N,)."""
+    """Kinetic energy [J] (K,) of each of K pieces beside that of its motion as a rigid body, the rotation of the
+    grains themselves left out; position, velocity (N,3) [m, m/s], mass (N,) [kg], labels (N,)."""
     remaining = motion_in_pieces(position, velocity, mass, labels)
     return 0.5 * np.bincount(labels, weights=mass * np.einsum("ij,ij->i", remaining, remaining))
 
@@ -62,8 +62,8 @@ def means_of_pieces(values, labels, mass):
 
 
 def pair_velocities(position, velocity, distance):
-    """Normal component (M,) [m/s] of the relative velocity of the pairs of grains nearer than `distance` [m], positive
-    where they approach (A22 section 5.1); position (N,3) [m], velocity (N,3) [m/s].
+    """Normal component (M,) [m/s] of the relative velocity of the pairs of grains nearer than `distance` [m],
+    positive where they approach (A22 section 5.1); position (N,3) [m], velocity (N,3) [m/s].
 
     >>> pair_velocities(np.array([[0.0, 0, 0], [1, 0, 0]]), np.array([[2.0, 1, 0], [-1, 0, 0]]), 1.5)
     array([3.])

@@ -19,8 +19,8 @@ def maximum_of_run(run):
 
 
 def are_equal(run):
-    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, or one hits a plate: d and v have a
-    meaning then."""
+    """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, or one hits a plate: d and v have
+    a meaning then."""
     start = run.start
     masses = np.bincount(start.aggregate, start.radius**3, minlength=2)
     return has_plate(vars(start)) or bool(np.ptp(masses) <= UNLIKE * masses.max())

@@ -4,10 +4,9 @@ leaves it.
 Counted are the grains that belong to the aggregate at the start (fragments.belongs_to_an_aggregate). With f_on the
 fraction of their mass that is connected with the plate at the end, and f_off that of the heaviest piece that is not:
 
-    never met      no contact with the plate at any time
-    sticking       f_on >= 0.9
-    bouncing       f_off >= 0.9, whatever small part it has left on the plate
-    fragmentation  everything else: what sticks then is the mass transfer of laboratories, f_on
+    never met      no contact with the plate at any time sticking       f_on >= 0.9 bouncing       f_off >= 0.9,
+    whatever small part it has left on the plate fragmentation  everything else: what sticks then is the mass transfer
+    of laboratories, f_on
 
 The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the
 heaviest piece along that of the aggregate at the start, over the latter.
@@ -25,8 +24,8 @@ from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses
 from .motion import means_of_pieces, pieces_that_can_meet
 from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, ROUNDING, STICKING, Outcome, mean_velocity, restitution
 
-# Radius of the sphere that stands for the plate, over the largest distance of a grain from the point of the plate below
-# the grains.
+# Radius of the sphere that stands for the plate, over the largest distance of a grain from the point of the plate
+# below the grains.
 FLAT = 1e3
 MOST = 0.9  # of the mass, on the plate or in the piece that has bounced
 

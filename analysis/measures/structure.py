@@ -25,9 +25,7 @@ def grains_within(position, distance, cell_size=None, origins=None):
     Parameters
     ----------
     position : (N, 3) array
-        Centres, anywhere.
-    distance : array
-        Of any shape, in the unit of position.
+    distance : array of any shape
     cell_size : (3,) array, optional
         Edges of the periodic cell; open space if left out.
     origins : int, optional
@@ -35,8 +33,7 @@ def grains_within(position, distance, cell_size=None, origins=None):
 
     Returns
     -------
-    array
-        In the shape of distance.
+    array in the shape of distance
 
     Examples
     --------
@@ -68,24 +65,12 @@ def fractal_dimension(distance, counts):
 
 
 def correlation_dimension(position, radius):
-    """Fractal dimension of a piece: slope of ln N(< s) against ln s, from 3 radii to 0.7 R_g.
+    """Fractal dimension of a piece: slope of ln N(< s) against ln s, from 3 radii to 0.7 R_g; NaN if these differ by
+    less than a factor of 1.5. position (N,3), radius (N,).
 
     The surface lowers it: of 256 to 4096 grains BCCA aggregates have 1.87 (scatter 0.05; infinite ones 1.9), BPCA
     aggregates 2.4 to 2.6 (3), close-packed spheres thinned to 0.4 some 2.85 (3). Grassberger & Procaccia (1983).
 
-    Parameters
-    ----------
-    position : (N, 3) array
-    radius : (N,) array
-        In the unit of position.
-
-    Returns
-    -------
-    float
-        NaN where these distances differ by less than a factor of 1.5.
-
-    Examples
-    --------
     >>> line = np.arange(100.0)[:, None] * [2, 0, 0]
     >>> round(correlation_dimension(line, np.ones(100)), 1)
     1.0
@@ -100,22 +85,9 @@ def correlation_dimension(position, radius):
 
 
 def gyration_radius(position, radius=None):
-    """Radius of gyration of points of equal mass (S17 eq 13), or of spheres of one density.
+    """Radius of gyration of points (N,3) of equal mass (S17 eq 13); with radius (N,) of spheres of one density,
+    R_g^2 = sum m_i (|x_i - x_c|^2 + 3/5 r_i^2)/sum m_i.
 
-    Of spheres R_g^2 = sum m_i (|x_i - x_c|^2 + 3/5 r_i^2)/sum m_i.
-
-    Parameters
-    ----------
-    position : (N, 3) array
-    radius : (N,) array, optional
-        In the unit of position; points if left out.
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
     >>> gyration_radius([[0.0, 0, 0], [2, 0, 0]]), round(gyration_radius([[0.0, 0, 0]], [1.0]) ** 2, 3)
     (1.0, 0.6)
     """
@@ -127,23 +99,9 @@ def gyration_radius(position, radius=None):
 
 
 def filling_factor(position, radius):
-    """Volume of spheres over that of a homogeneous sphere of their radius of gyration.
+    """Volume of spheres, position (N,3), radius (N,), over that of a homogeneous sphere of their radius of gyration,
+    which is r_c = (5/3)^(1/2) R_g (Mukai et al. 1992; A22 section 2.4). Overlaps count twice; of one grain it is 1.
 
-    Its radius is r_c = (5/3)^(1/2) R_g (Mukai et al. 1992; A22 section 2.4). Overlaps count twice; of one grain it is
-    1.
-
-    Parameters
-    ----------
-    position : (N, 3) array
-    radius : (N,) array
-        In the unit of position.
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
     >>> round(filling_factor([[-1.0, 0, 0], [1, 0, 0]], [1.0, 1.0]), 3)
     0.459
     """
@@ -152,20 +110,8 @@ def filling_factor(position, radius):
 
 
 def mean_coordination(grains, contact_pairs):
-    """Mean number of contacts of a grain, 2 M/N.
+    """Mean number of contacts of a grain, 2 M/N, for N = `grains` and contact_pairs (M,2).
 
-    Parameters
-    ----------
-    grains : int
-        N
-    contact_pairs : (M, 2) array of int
-
-    Returns
-    -------
-    float
-
-    Examples
-    --------
     >>> mean_coordination(4, [[0, 1], [2, 3]])
     1.0
     """
@@ -173,24 +119,9 @@ def mean_coordination(grains, contact_pairs):
 
 
 def inner_coordination(position, contact_pairs, centre, reach):
-    """Mean number of contacts of the grains whose centre is nearer than `reach` to a point.
+    """Mean number of contacts of the grains nearer than `reach` to a point; NaN if there is none. position (N,3),
+    contact_pairs (M,2), centre (3,) or, one for each grain, (N,3).
 
-    Parameters
-    ----------
-    position : (N, 3) array
-    contact_pairs : (M, 2) array of int
-    centre : (3,) or (N, 3) array
-        One point, or one for each grain, in the unit of position.
-    reach : float
-        In the unit of position.
-
-    Returns
-    -------
-    float
-        NaN if there is no such grain.
-
-    Examples
-    --------
     >>> inner_coordination([[0.0, 0, 0], [2, 0, 0], [4, 0, 0]], [[0, 1], [1, 2]], [2.0, 0, 0], 1.0)
     2.0
     """

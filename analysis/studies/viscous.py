@@ -13,7 +13,7 @@ from ..measures.fragments import (
     fragment_sizes,
     growth_efficiency,
 )
-from ..measures.ledger import initial_kinetic_energy
+from ..measures.ledger import WAYS, initial_kinetic_energy
 from ..measures.motion import NEAR, pair_velocities, root_mean_square
 from ..measures.of_run import derived_constants
 from ..runs.collect import Scene
@@ -31,14 +31,6 @@ DRAG = 6e-12  # T_vis [s]: A22's largest
 V50, V63 = 10**1.7, 10**1.8  # m/s
 REFERENCE = {"velocity": V50, "twelfth": 3.0}  # the collision that A22 shows most
 FAST = 10.0  # m/s: A22 section 5.1 counts the pairs of neighbours beyond
-# A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
-WAYS = {
-    "rolling": ["rollingDissipation"],
-    "sliding": ["slidingDissipation"],
-    "twisting": ["twistingDissipation"],
-    "contacts": ["connection", "disconnection"],
-    "drag": ["drag"],
-}
 LOST = [channel for channels in WAYS.values() for channel in channels]
 
 # What is measured of a run. Numbers that a table rounds are those of A22's grid: 50.1 m/s is 10^1.7 m/s.

@@ -8,10 +8,8 @@ from analysis.measures.compression import *
 
 def test_d_and_v_of_few_grains():
     """One empty side leaves no value, and a grain at zero belongs to neither."""
-    x, speed = np.array([-3.0, 1.0, 2.0]), np.array([4.0, -1.0, -2.0])
-    assert compression_length(x, 2.5) == pytest.approx(5.0 - (1.5 + 3.0))
-    assert mutual_velocity(x, speed) == pytest.approx(-(-1.5 - 4.0))
-    assert np.isnan(compression_length([1.0, 2.0], 1.0)) and np.isnan(mutual_velocity([-1.0, 0.0], [0.0, 0.0]))
+    found = compression_and_velocity([-3.0, 1.0, 2.0], [4.0, -1.0, -2.0], 2.5)
+    assert found == pytest.approx((5.0 - (1.5 + 3.0), -(-1.5 - 4.0)))
     assert np.all(np.isnan(compression_and_velocity([0.0, 0.0], [1.0, 1.0], 1.0)))
     x, speed = np.array([-1.0, 0.0, 3.0]), np.array([2.0, 100.0, -2.0])
     assert compression_and_velocity(x, speed, 2.0) == (0.0, 4.0)
@@ -57,3 +55,21 @@ def test_noise_stays_within_the_stated_error():
         assert maximum.length == pytest.approx(5.0, abs=4e-3)
         assert abs(maximum.time - 4.1) <= maximum.time_error * (1 + 1e-9) < 0.5
         assert 0 < maximum.length_error < 1e-2
+
+
+def test_d_max_is_of_the_first_compression():
+    """Aggregates that stuck creep together further, 1.3 after a first maximum of 1: that is not d_max."""
+    time = np.linspace(0.0, 20.0, 2001)
+    d = np.where(time < np.pi, np.sin(time), 1.3 * (1 - np.exp(np.pi - time)))
+    first, exceeded = first_compression(time, d, np.gradient(d, time))
+    assert first.length == pytest.approx(1.0, abs=1e-3) and first.inside and exceeded
+    assert maximum_compression(time, d, np.gradient(d, time)).length > 1.29
+
+
+def test_largest_return_speed():
+    """v = cos t falls to -1 at pi; what comes before the largest compression, or is still growing at the end, is not it."""
+    time = np.linspace(0.0, 6.0, 601)
+    speed, when = largest_return_speed(time, np.cos(time), np.pi / 2)
+    assert speed == pytest.approx(1.0, abs=1e-5) and when == pytest.approx(np.pi, abs=0.01)
+    assert largest_return_speed(time[:300], np.cos(time[:300]), np.pi / 2) == (None, None)
+    assert largest_return_speed(time, np.abs(np.cos(time)), np.pi / 2) == (None, None)

@@ -1,11 +1,9 @@
-"""What packings say before they collide, and the return phase."""
+"""How many grains are at the place where two aggregates meet."""
 
 import numpy as np
 import pytest
 
-from analysis.measures.compression import largest_return_speed
 from analysis.measures.structure import zone_filling, zone_volume
-from analysis.studies.columns import returned
 from analysis.studies.elastoplastic.measure import zones_that_meet
 from yade_scripts import packings
 
@@ -52,16 +50,3 @@ def test_both_aggregates_count_at_the_pole_where_they_meet():
     assert filling(np.delete(ball, near, axis=0)) == pytest.approx(one / 2)
     without_far = one / 2 + (whole - one / 2) * len(ball) / (len(ball) - len(far))
     assert filling(np.delete(ball, far, axis=0)) == pytest.approx(without_far)
-
-
-def test_largest_return_speed():
-    """v = cos t falls to -1 at pi; what comes before the largest compression, or is still growing at the end, is not it."""
-    time = np.linspace(0.0, 6.0, 601)
-    speed, when = largest_return_speed(time, np.cos(time), np.pi / 2)
-    assert speed == pytest.approx(1.0, abs=1e-5) and when == pytest.approx(np.pi, abs=0.01)
-    assert largest_return_speed(time[:300], np.cos(time[:300]), np.pi / 2) == (None, None)
-    assert largest_return_speed(time, np.abs(np.cos(time)), np.pi / 2) == (None, None)
-    gap = np.cos(time)
-    gap[313:316] = np.nan
-    assert largest_return_speed(time, gap, np.pi / 2)[0] == pytest.approx(1.0, abs=1e-3)
-    assert np.isnan(returned({"time": time[:9], "v": np.ones(9)}, 0.0)[0])

@@ -9,7 +9,7 @@ from made_collisions import DENSITY, FILLING, MODULI, OFFSET, made_run
 from scipy.optimize import least_squares as of_scipy
 from written_runs import RADIUS
 
-from analysis.measures.compression import compression_length
+from analysis.measures.compression import compression_and_velocity
 from analysis.runs.table import read_table
 from analysis.studies.analyse import analyse
 from analysis.studies.curves import power
@@ -157,6 +157,6 @@ def test_packings_made_again_are_those_of_the_runs():
             packing = cpe(row.filling, row.radius, row.grain_radius, row.overlap, row.seed, index)
             found.append(moved(packing, (side * reach, 0.0, 0.0)).position)
         position, aggregate = np.concatenate(found), np.repeat([0, 1], [len(own) for own in found])
-        offset = compression_length(position[:, 0], row.radius) + 2 * row.grain_radius
+        offset = compression_and_velocity(position[:, 0], position[:, 0], row.radius)[0] + 2 * row.grain_radius
         assert offset == pytest.approx(row.offset, abs=1e-9 * row.grain_radius)
         assert zones_that_meet(position, aggregate, row.radius, row.grain_radius) == pytest.approx(row.zone_filling)
