@@ -39,7 +39,6 @@
 # make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
 # make test-docs  the same, without a warning, and runs what the pages say
 # make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
-# make ovito  installs OVITO's package in build/ovito, where the tests of exports find it
 # make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
 #             build/debian.md. SYSTEMS=sid: unstable
 # make test-arm64  asks for the same bits of the engine on a 64-bit ARM, emulated, as here: build/arm64.md. A whole system:
@@ -300,15 +299,6 @@ test-mutations: all
 test-viewer: all
 	@$(MAKE) --no-print-directory deps PACKAGES="chromium chromium-driver python3-selenium"
 	@$(PYTHON) -m pytest -p no:cacheprovider tests/analysis/test_viewer.py
-
-# With it the tests open exports in OVITO too (200 MB from PyPI, in a folder of its own).
-.PHONY: ovito
-ovito: build/ovito/installed
-build/ovito/installed: Makefile
-	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv libegl1 libopengl0"
-	@$(PYTHON) -m venv build/ovito
-	@build/ovito/bin/python -m pip -q install --disable-pip-version-check ovito==3.17.2
-	@touch $@
 
 SYSTEMS ?= bookworm trixie
 .PHONY: test-debian

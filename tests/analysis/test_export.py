@@ -1,9 +1,4 @@
-"""Exports are opened by the real readers, field by field: VTK, and OVITO where it is (make ovito)."""
-
-import json
-import os
-import subprocess
-from pathlib import Path
+"""Exports, field by field: VTK files by VTK's own reader, extended XYZ by its specification."""
 
 import numpy as np
 import pytest
@@ -13,8 +8,6 @@ from analysis.__main__ import main
 from analysis.export.fields import CONTACTS, GRAINS, Exported
 from analysis.runs.folder import State, open_run
 
-HERE = Path(__file__).resolve().parent
-OVITO = HERE.parents[1] / "build/ovito/bin/python"
 SIZE = np.array([1e-6, 1.5e-6, 2e-6])
 PLATE = dict(plane_axis=np.array([2]), plane_position=np.zeros(1), plane_contacts=np.empty((0, 2), int))
 PLATE["plane_contact_normal_force"] = np.empty(0)
@@ -150,39 +143,6 @@ def test_vtk_reads_every_field(run):
             found = vtk_to_numpy(lines.GetPoints().GetData())
             order = vtk_to_numpy(lines.GetLines().GetConnectivityArray())
             agree({"ends": found[order].reshape(-1, 2, 3)}, {"ends": ends})
-
-
-# ---- OVITO ----
-
-# OVITO's words for the fields that it knows, and the rest as they are
-PARTICLES = dict(id="Particle Identifier", radius="Radius", mass="Mass", v="Velocity", omega="Angular Velocity")
-LINES = {"id1": "Particle Identifier 1", "id2": "Particle Identifier 2"}
-
-
-@pytest.mark.skipif(not OVITO.exists(), reason="make ovito installs it in build/ovito")
-def test_ovito_reads_every_field(run):
-    files = [str(run.path / "export" / name) for name in ("run.pvd", "run.xyz")]
-    environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
-    command = [OVITO, HERE / "read_by_ovito.py", *files]
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=300)
-    assert done.returncode == 0, done.stderr
-    read = json.loads(done.stdout.splitlines()[-1])
-    for file in files:
-        for state, frame in zip(run.states, read[file], strict=True):
-            grains, contacts, ends = expected(state)
-            found = frame["grains"]
-            assert frame["time"] == pytest.approx(state.time, rel=1e-12)
-            agree({"position": found["Position"]}, {"position": state.position})
-            wanted = {PARTICLES.get(name, name): values for name, values in grains.items()}
-            agree({**found, "Radius": 0}, {**wanted, "Radius": 0})
-            single = 1e-6  # precision, in which OVITO keeps radii
-            assert np.allclose(found["Radius"], state.radius, rtol=single, atol=0)
-            if file.endswith(".pvd") and len(ends):
-                lines = {name: values[::2] for name, values in frame["contacts"].items()}  # a value for both ends
-                agree(lines, {LINES.get(name, name): values for name, values in contacts.items()})
-                agree({"ends": np.reshape(frame["contacts"]["Position"], (-1, 2, 3))}, {"ends": ends})
-            if file.endswith(".xyz") and state.cell_size is not None:
-                assert np.allclose(frame["cell"], np.column_stack([np.diag(SIZE), np.zeros(3)]), rtol=1e-12, atol=0)
 
 
 # ---- extended XYZ, by its specification ----

@@ -48,11 +48,6 @@ def test_energy_areas_are_the_fractions(run):
     assert upper.lines[0].get_ydata() == pytest.approx(sum(parts.values()))
 
 
-def test_kinds_of_force():
-    kinds = force_kinds(np.array([1.0, 0.21, 0.19, -0.19, -0.21]), 1.0)
-    assert [list(np.flatnonzero(kinds[k])) for k in ("compression", "tension", "other")] == [[0, 1], [4], [2, 3]]
-
-
 def test_force_lines_are_the_contacts_of_the_slab(run):
     figure = forces_figure(run)
     panels = [axes for axes in figure.axes if axes.collections]

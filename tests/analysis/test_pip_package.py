@@ -1,4 +1,4 @@
-"""What pip installs of the repository works by itself: the command, its data files, a study."""
+"""What pip installs of the repository works by itself: the command and its data files."""
 
 import os
 import runpy
@@ -15,7 +15,6 @@ COPIED = runpy.run_path(str(TOP / "contact_law/installation.py"))["COPIED"]
 LISTED = """import analysis, pathlib
 top = pathlib.Path(analysis.__file__).parent
 print(*(p.relative_to(top.parent) for p in top.rglob("*") if p.is_file() and p.suffix != ".pyc"), sep="\\n")"""
-STUDIED = TOP / "analysis/gallery/compressed/runs.csv"
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +64,3 @@ def test_both_ways_of_installing_copy_the_same(call):
     found = call(sys.executable, "-c", LISTED)
     ours = {file for pattern in COPIED["analysis"] for file in (TOP / "analysis").glob(pattern)}
     assert set(found.split("\n")) - {""} == {str(file.relative_to(TOP)) for file in ours}
-
-
-def test_a_study_of_the_package_is_that_of_the_checkout(call):
-    """With its paper.toml, the page's template and the gallery's numbers."""
-    arguments = ("study", "compressed", str(STUDIED), "--format", "markdown", "--page", "page.html")
-    ours = [sys.executable, "-m", "analysis", *arguments[:-2]]
-    done = subprocess.run(ours, cwd=TOP, capture_output=True, text=True, env={**os.environ, "COLUMNS": "80"})
-    assert done.stdout.strip() and done.stdout.strip() in call("dust-analysis", *arguments)

@@ -9,7 +9,7 @@ import shutil
 import numpy as np
 import pytest
 from PIL import Image
-from written_runs import RADIUS, two_clusters, two_pairs
+from written_runs import RADIUS, two_clusters
 
 from analysis.__main__ import main
 from analysis.export.viewer import THREE
@@ -36,12 +36,6 @@ def test_the_page_holds_the_states_and_reaches_for_nothing(tmp_path):
         position = np.frombuffer(base64.b64decode(packed["position"]), dtype="<f4").reshape(-1, 3)
         assert np.allclose(position * RADIUS + middle, state.position, atol=1e-5 * RADIUS)
     assert not re.search(r'<(script|link|img)[^>]*(src|href)="', page) and "<b>x" not in page
-
-
-def test_what_cannot_be_written_is_one_line(tmp_path, capsys):
-    run = two_pairs(tmp_path / "run", 1.0, 1)
-    assert main(["view", str(run), "--three", str(tmp_path)]) == 2
-    assert "apt-get install libjs-three" in capsys.readouterr().err and not (run / "view.html").exists()
 
 
 @pytest.fixture(scope="module")

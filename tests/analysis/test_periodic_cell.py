@@ -1,13 +1,12 @@
-"""Pressure, tension and what else a compression's history tells, of made histories."""
+"""A periodic cell: virial pressure against closed forms, and pressure and tension of made histories."""
 
 import numpy as np
 import pytest
+from written_runs import cubic_lattice
 
 from analysis.measures.periodic_cell import *
-from analysis.studies.compression.curve import FILLINGS, coordination_at, pressure_at
-from analysis.theory.aggregates import bcca_coordination
-from analysis.theory.compression import compressive_strength_dense
 
+A = 2e-7
 SCALE = 4.74e5
 
 
@@ -27,25 +26,10 @@ def compression(power=3.0, low=0.004, high=0.5, samples=20_001):
     }
 
 
-def test_binned_pressure_has_little_bias_and_keeps_to_what_is_covered():
-    """A bin's width biases by a thousandth where P goes with phi^3, and by less than its error where P is as steep as T23."""
-    found = pressure_at(compression())
-    inside = np.isfinite(found)
-    assert FILLINGS[inside][0] == pytest.approx(10**-2.25) and FILLINGS[inside][-1] == pytest.approx(0.49)
-    thin = inside & (FILLINGS < 0.11)
-    assert found[thin] == pytest.approx(SCALE * FILLINGS[thin] ** 3, rel=1.2e-3)
-    steep = dict(compression(samples=100_001), boundaryWork=None)
-    filling = steep["filling"]
-    middle = compressive_strength_dense(np.sqrt(filling[1:] * filling[:-1]), SCALE)
-    steep["boundaryWork"] = np.concatenate([[0.0], np.cumsum(middle * np.diff(1.0 / filling))])
-    assert pressure_at(steep)[inside] == pytest.approx(compressive_strength_dense(FILLINGS[inside], SCALE), rel=1e-6)
-
-
 def test_pressure_by_the_work_counts_what_happens_between_samples():
     """An oscillation that every sample meets at its top is not in the work, nor in the pressure."""
     history = compression()
     seen = dict(history, pressure=3.0 * history["pressure"])
-    assert np.array_equal(pressure_at(seen), pressure_at(history), equal_nan=True)
     fillings, pressures = pressure_over(seen, 1e4)
     assert pressures == pytest.approx(SCALE * fillings**3, rel=0.02)
 
@@ -58,18 +42,6 @@ def test_the_pressure_at_the_end_is_a_mean():
     turned = {name: np.append(series, series[-2::-1]) for name, series in seen.items()}
     turned["time"] = 1e6 + np.append(history["time"] - 1e6, 1e6 - history["time"][-2::-1])
     assert pressure_at_end(turned, 1e4) == pytest.approx(3 * SCALE * 0.004**3, rel=0.1)
-
-
-def test_coordination_at_fillings_and_bins_to_the_end_of_runs():
-    """Of A24 eq 45, whatever the bin's width; to 0.5 and to random close packing, as far as the study's tables go."""
-    history = compression()
-    history["coordination"] = bcca_coordination(history["filling"]) + 0.1
-    found = coordination_at(history)
-    inside = np.isfinite(found)
-    assert inside.sum() > 10 and found[inside] == pytest.approx(bcca_coordination(FILLINGS[inside]) + 0.1, rel=1e-12)
-    for high in (0.5, 0.64):
-        found = pressure_at(compression(high=high))
-        assert FILLINGS[np.isfinite(found)][-1] > 0.97 * high
 
 
 def test_fillings_at_a_share_of_a_channel_and_at_a_pressure():
@@ -110,3 +82,28 @@ def test_tension_of_a_stretched_cell():
     fillings, stress = tension(both, 5e4)
     assert stress[:4] == pytest.approx(50.0, rel=1e-9) and stress[-2:] == pytest.approx(0.0, abs=1e-9)
     assert fillings[0] > fillings[-1]
+
+
+def test_pressure_of_springs_along_one_axis():
+    """A third of the force through a plane across x over its area."""
+    site, pairs = cubic_lattice(3)
+    pressure = contact_pressure(A * site, pairs[::3], np.full(27, 2e-9), np.full(3, 3 * A))
+    assert pressure == pytest.approx(9 * 2e-9 / (3 * A) ** 2 / 3, rel=1e-12)
+
+
+def test_images_do_not_matter():
+    """Grains moved by whole edges, with their velocities as K13 eqs 8-11 have them, give the same pressures."""
+    random = np.random.default_rng(5)
+    cell, rate = np.array([1.0, 1.2, 1.5]), np.array([-0.3, -0.2, 0.1])
+    position, velocity, mass = random.uniform(-0.4, 0.4, (20, 3)), random.normal(size=(20, 3)), random.uniform(1, 2, 20)
+    image = random.integers(-2, 3, (20, 3))
+    elsewhere, faster = position + image * cell, velocity + image * rate * cell
+    assert cell_velocity(elsewhere, faster, cell, rate) == pytest.approx(velocity, abs=1e-12)
+    one, other = (kinetic_pressure(mass, x, v, cell, rate) for x, v in ((position, velocity), (elsewhere, faster)))
+    assert one == pytest.approx((mass * (velocity**2).sum(axis=1)).sum() / 3 / 1.8, rel=1e-12)
+    assert other == pytest.approx(one, rel=1e-12)
+    pairs = random.integers(0, 20, (30, 2))
+    forces = random.normal(size=30)
+    first, second = (contact_pressure(x, pairs, forces, cell) for x in (position, elsewhere))
+    assert second == pytest.approx(first, rel=1e-9)
+    assert filling_factor([1.0, 1.0], [4.0, 4.0, 4.0]) == pytest.approx(2 * 4 / 3 * np.pi / 64)
