@@ -1,4 +1,5 @@
-"""Columns of a table of runs with how a run folder fills them, and those that several studies have: grains, outcome, return, energy."""
+"""Columns of a table of runs with how a run folder fills them, and those that several studies have: grains, outcome,
+return, energy."""
 
 from dataclasses import dataclass
 from math import isclose
@@ -25,8 +26,8 @@ class NotMeasured(Exception):
 
 @dataclass(frozen=True)
 class Columns:
-    """columns (runs.table.Column) that are measured together; of(run (RunFolder), row ({column: value} of those before)) -> their values, in
-    the same order; NotMeasured or RunFolderError where it can't."""
+    """columns (runs.table.Column) that are measured together; of(run (RunFolder), row ({column: value} of those
+    before)) -> their values, in the same order; NotMeasured or RunFolderError where it can't."""
 
     of: Callable
     columns: tuple
@@ -43,7 +44,8 @@ def one(name, unit, meaning, of, **more):
 
 
 def parameter(name, unit, meaning, kind="f", usual=None, shown=lambda value: value):
-    """A parameter of the run; usual: its value in runs of earlier versions, which lack it; shown(value): what the column has."""
+    """A parameter of the run; usual: its value in runs of earlier versions, which lack it; shown(value): what the
+    column has."""
 
     def of(run):
         try:
@@ -110,15 +112,15 @@ PAPERS = {name: _of_paper(material, RADII[name]) for name, material in MATERIALS
 
 
 def other_grains(parameters):
-    """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and OF_GRAINS;
-    all names for a material that they do not have."""
+    """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and
+    OF_GRAINS; all names for a material that they do not have."""
     theirs = PAPERS.get(parameters["material"], {})
     return [n for n in OF_GRAINS if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
 
 
 def require_papers_grains(run, but=()):
-    """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the names
-    `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
+    """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the
+    names `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
     parameters = {"material": run.parameters["material"], **row_of(GRAINS, run)}
     others = [name for name in other_grains(parameters) if name not in but]
     if others:
@@ -142,8 +144,8 @@ HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
 
 
 def largest_compression(run):
-    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where the
-    aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
+    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where
+    the aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
     history = run.history
     maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
     if maximum is None or not maximum.inside or not met(run):
@@ -160,15 +162,16 @@ def _outcome(run, row):
 
 
 def returned(history, time):
-    """(largest speed [m/s] at which the halves part, its time [s]) after a time [s]; NaN where they never part, or the record ends before
-    their speed falls."""
+    """(largest speed [m/s] at which the halves part, its time [s]) after a time [s]; NaN where they never part, or the
+    record ends before their speed falls."""
     return tuple(
         np.nan if value is None else value for value in largest_return_speed(history["time"], history["v"], time)
     )
 
 
 def _changes(run, row):
-    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and until the end, over K(0)."""
+    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and
+    until the end, over K(0)."""
     times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
     parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
     return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]

@@ -34,7 +34,8 @@ class Row:
     source : str
         Section or equation.
     runs : int, optional
-        Independent runs behind the paper's number, which are taken to scatter as ours do; None: it has no error of its own.
+        Independent runs behind the paper's number, which are taken to scatter as ours do; None: it has no error of its
+        own.
     note : str
         Why the two are not quite the same thing.
     """
@@ -61,7 +62,8 @@ class Row:
 
     @property
     def difference(self):
-        """How far ours lies beyond the paper's number or limits in combined standard errors, with its sign; None where that is not known."""
+        """How far ours lies beyond the paper's number or limits in combined standard errors, with its sign; None where
+        that is not known."""
         if self.paper is None or not self.combined or math.isnan(self.ours.value):
             return None
         low, high = self.limits
@@ -136,8 +138,8 @@ def counted(rows):
         return ""
     parts = ", ".join(f"{words[word]} {word}" for word in (AGREES, DIFFERS, UNCLEAR, NOT_RUN))
     return (
-        f"All {sum(words.values())} comparisons: {parts}. By chance alone {0.0455 * numbers:.1f} of {numbers} would lie "
-        f"beyond two errors, {0.0027 * numbers:.1f} beyond three."
+        f"All {sum(words.values())} comparisons: {parts}. By chance alone {0.0455 * numbers:.1f} of {numbers} would "
+        f"lie beyond two errors, {0.0027 * numbers:.1f} beyond three."
     )
 
 

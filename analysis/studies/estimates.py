@@ -1,8 +1,8 @@
 """Numbers of a table of runs (a pandas DataFrame, a row a run) with their standard errors.
 
-A number is any function of the table, a statistic. Its error is the jackknife's over independent pairs of aggregates, which the column
-`pair` tells apart: the statistic again without each pair in turn (Efron & Tibshirani 1993, eq 11.5). Means, differences and ratios of the
-same pairs, thresholds and fits need nothing more."""
+A number is any function of the table, a statistic. Its error is the jackknife's over independent pairs of aggregates,
+which the column `pair` tells apart: the statistic again without each pair in turn (Efron & Tibshirani 1993, eq 11.5).
+Means, differences and ratios of the same pairs, thresholds and fits need nothing more."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,8 @@ class Estimate:
     value : float
         NaN where it is not known.
     error : float or None
-        Standard error; None with fewer than two pairs, or where it is undefined without one of them; 0 for a closed form.
+        Standard error; None with fewer than two pairs, or where it is undefined without one of them; 0 for a closed
+        form.
     pairs : int
         Independent pairs (or clusters, runs) behind it; 0 for a closed form.
     counted : str
@@ -96,7 +97,8 @@ def _jackknife(value, without):
 
 
 def mean(values):
-    """Statistic: the mean over pairs of each pair's mean of a column, or of a function from runs to values (runs,), without NaN."""
+    """Statistic: the mean over pairs of each pair's mean of a column, or of a function from runs to values (runs,),
+    without NaN."""
 
     def of(runs):
         own = values(runs) if callable(values) else runs[values]
@@ -106,8 +108,8 @@ def mean(values):
 
 
 def beside(statistic, one, other, of=np.subtract):
-    """Estimate of of(statistic(one), statistic(other)) for two tables of runs, a difference or a ratio: of the pairs that are in both,
-    or of all where none is."""
+    """Estimate of of(statistic(one), statistic(other)) for two tables of runs, a difference or a ratio: of the pairs
+    that are in both, or of all where none is."""
     shared = set(one["pair"]) & set(other["pair"])
     one, other = (own[own["pair"].isin(shared)] if shared else own for own in (one, other))
     both = pandas.concat([one.assign(first=True), other.assign(first=False)], ignore_index=True)
@@ -148,14 +150,16 @@ def fraction(runs, so, undecided=None):
 
 
 def ending(runs, outcome):
-    """Estimate of the fraction of runs that end so (an outcome of measures.outcome), of those that met and are decided."""
+    """Estimate of the fraction of runs that end so (an outcome of measures.outcome), of those that met and are
+    decided."""
     met = runs[runs.outcome != NEVER_MET]
     return fraction(met, met.outcome == outcome, met.outcome == UNDECIDED)
 
 
 def threshold(x, y):
-    """x at which y (K,) first falls from above 0 to 0 or below, linear between rising x (K,); NaN where it does not. Of mean growth
-    efficiency against velocity: the threshold velocity of fragmentation (Arakawa et al. 2022, section 3.2).
+    """x at which y (K,) first falls from above 0 to 0 or below, linear between rising x (K,); NaN where it does not.
+    Of mean growth efficiency against velocity: the threshold velocity of fragmentation (Arakawa et al. 2022, section
+    3.2).
 
     >>> float(threshold([10.0, 20.0, 40.0], [1.0, 0.5, -0.5]))
     30.0
@@ -169,7 +173,8 @@ def threshold(x, y):
 
 
 def exponent(x, y):
-    """n of y ~ x^n: least squares of the logarithms; NaN with fewer than three points, or where one of y is not positive.
+    """n of y ~ x^n: least squares of the logarithms; NaN with fewer than three points, or where one of y is not
+    positive.
 
     >>> round(exponent([1.0, 2.0, 4.0], [3.0, 12.0, 48.0]), 9)
     2.0

@@ -133,8 +133,9 @@ class Snapshot:
 
 @styled
 def snapshots(runs, folder, title):
-    """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each: their states at these times where
-    their run folders are at hand, else those that are kept. Every panel has its own scale, with a bar in grain radii.
+    """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each: their states at these times
+    where their run folders are at hand, else those that are kept. Every panel has its own scale, with a bar in grain
+    radii.
 
     Parameters
     ----------

@@ -47,8 +47,9 @@ class Gathered:
 def gather(study, paths):
     """Gathered runs of a study.Study: tables (.csv) are read, then run folders measured.
 
-    Of runs with the same values in scene.key one is counted, since more would make errors too small: a table's row before a folder
-    (whose states serve figures), and of folders the longest run. Of runs that must be alike and are not none is counted."""
+    Of runs with the same values in scene.key one is counted, since more would make errors too small: a table's row
+    before a folder (whose states serve figures), and of folders the longest run. Of runs that must be alike and are
+    not none is counted."""
     collection = collect(paths, study.scene)
     found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
     parts, taken = [], {}
@@ -130,8 +131,8 @@ def _key(study, values):
 
 
 def _unlike(study, runs):
-    """What is wrong with RunFolders that must be alike: one line, or None. A parameter that a run of an earlier version lacks is as in
-    the others; those of the study's key and the length of runs may differ."""
+    """What is wrong with RunFolders that must be alike: one line, or None. A parameter that a run of an earlier
+    version lacks is as in the others; those of the study's key and the length of runs may differ."""
     rows, usual = [(run.path, parameters_of(run)) for run in runs], {}
     for _, row in reversed(rows):
         usual.update(row)

@@ -1,5 +1,5 @@
-"""The pages of studies: tables between marks in pages that a person has written, numbers in their words, and one HTML page of a
-user's own runs."""
+"""The pages of studies: tables between marks in pages that a person has written, numbers in their words, and one HTML
+page of a user's own runs."""
 
 import base64
 import re
@@ -14,7 +14,7 @@ from .study import GALLERY
 
 START, END = "<!-- table: made by `make gallery` -->", "<!-- end of the table -->"
 NUMBER = re.compile(r"\d+(?:\.\d+)? ± \d+(?:\.\d+)?")
-STYLE = """body { font: 16px/1.5 "DejaVu Sans", Arial, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+STYLE = """body { font: 16px/1.5 Arial, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.8rem; }
 th, td { padding: 0.15rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }"""
 
@@ -52,8 +52,8 @@ def filled(file, text, rows, independent):
 
 
 def require_numbers(file, text, made):
-    """PageError where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str]), but for
-    its sign."""
+    """PageError where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str]),
+    but for its sign."""
     known = {own for number in made for own in NUMBER.findall(number)}
     for number in NUMBER.findall(text):
         if number not in known:
@@ -81,8 +81,9 @@ def html_page(study, rows, figures, lines):
         body += f'\n<p><img alt="{escape(caption)}" src="data:image/png;base64,{picture}"><br>{escape(caption)}</p>'
     title = escape(study.title)
     return (
-        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{title}</title>\n<style>\n{STYLE}\n</style></head>\n'
-        f"<body>\n<h1>{title}</h1>\n{body}\n<p>Version {version_text()}.</p>\n</body>\n</html>\n"
+        f'<!DOCTYPE html>\n<html lang="en">\n<head><meta charset="utf-8"><title>{title}</title>\n'
+        f"<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n{body}\n"
+        f"<p>Version {version_text()}.</p>\n</body>\n</html>\n"
     )
 
 

@@ -1,5 +1,5 @@
-"""A study: which runs count, what is measured of each, numbers beside a paper's, figures. One module here each, named as the study,
-defines STUDY; so does a file of one's own."""
+"""A study: which runs count, what is measured of each, numbers beside a paper's, figures. One module here each, named
+as the study, defines STUDY; so does a file of one's own."""
 
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -14,7 +14,7 @@ from ..runs.format import PARAMETER_WORDS
 from ..runs.script import module_of
 from .columns import LARGEST, OUTCOME, VELOCITY, flat, parameter, row_of
 
-NAMES = ("atlas", "sintered", "viscous")
+NAMES = ("atlas", "compression", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 SAYS = "must be as analysis/STUDIES.md says"
 
@@ -41,7 +41,8 @@ class Study:
     figures : callable, optional
         From the same to (name, caption, matplotlib Figure or None) of each figure.
     prepared : callable, optional
-        From the table of runs to one with further columns, which rows and figures get; the column `pair` is added to it first.
+        From the table of runs to one with further columns, which rows and figures get; the column `pair` is added to
+        it first.
     independent : str
         What counts as one in errors, in the plural.
     alike : bool
@@ -82,7 +83,8 @@ def collision_study(title, question, varied, rows, figures=lambda runs: (), pair
     Parameters
     ----------
     varied : tuple of str
-        Parameters that differ from run to run, the seed among them. Run folders that differ in another one are refused together.
+        Parameters that differ from run to run, the seed among them. Run folders that differ in another one are refused
+        together.
     rows, figures : callable
         As in Study.
     pair : tuple of str, optional
@@ -122,7 +124,8 @@ def find(name):
 
 @contextmanager
 def own_errors(file):
-    """Context in which an error of a study of one's own (file: its Path; None: none) becomes NoSuchStudy, with its line."""
+    """Context in which an error of a study of one's own (file: its Path; None: none) becomes NoSuchStudy, with its
+    line."""
     try:
         yield
     except (Exception, SystemExit) as error:

@@ -81,8 +81,9 @@ def _fragments(run, row):
 
 
 def _neighbours(run, row):
-    """Largest rms of v_rel [m/s], and number of pairs that approach or part faster than FAST over N_tot, of pairs nearer
-    than NEAR over the states (A22 section 5.1); NaN for other collisions than REFERENCE, since all states are read."""
+    """Largest rms of v_rel [m/s], and number of pairs that approach or part faster than FAST over N_tot, of pairs
+    nearer than NEAR over the states (A22 section 5.1); NaN for other collisions than REFERENCE, since all states are
+    read."""
     if abs(row["velocity"] / V50 - 1) > 2e-3 or abs(row["impact"] ** 2 - 0.25) > 5e-4:
         return np.nan, np.nan
     arrays = (run.states.arrays(k, ("position", "velocity")) for k in range(len(run.states)))
@@ -187,7 +188,8 @@ def small_fragments(runs):
 
 
 def by_size(runs, cumulative):
-    """(N (G,), mean over offsets of cumulative(sizes of fragments, N) (G,)): A22's N_cum, S_cum; NaN without all offsets."""
+    """(N (G,), mean over offsets of cumulative(sizes of fragments, N) (G,)): A22's N_cum, S_cum; NaN without all
+    offsets."""
     own = complete(runs)
     numbers = np.unique(np.geomspace(1, 2 * runs.grains.max(), 60).round().astype(int)) if len(own) else np.ones(3)
     curve = lambda text: cumulative(sizes_of(text), numbers).astype(float)
@@ -319,8 +321,8 @@ def figures(runs):
 
 STUDY = Study(
     title="Arakawa et al. (2022): viscous drag, growth and fragmentation",
-    question="How much does viscous drag between grains help colliding aggregates to grow, at which velocity do they fragment, and how are "
-    "the fragments distributed?",
+    question="How much does viscous drag between grains help colliding aggregates to grow, at which velocity do they "
+    "fragment, and how are the fragments distributed?",
     # Collisions of equal BPCA aggregates of equal ice grains, without bonds, springs held at their limits.
     scene=Scene(
         name="the study of Arakawa et al. (2022)",
