@@ -8,7 +8,7 @@
 
 dir(analysis) lists all names; docstrings say shapes and units. Functions of measures take plain arrays, such as
 analysis.fragment_labels(grains, contact_pairs), and raise ValueError for arrays of wrong shapes or with gaps.
-`analysis.__version__` and `analysis.commit` say which sources these are.
+`analysis.__version__` and `analysis.commit` identify the sources.
 
 A24 = Arakawa et al. 2024 (elastoplastic collisions), A22 = Arakawa et al. 2022 (viscous dissipation), K13 =
 Kataoka et al. 2013 (static compression), S17 = Sirono & Ueno 2017 (sintered aggregates). Everything is in SI units.

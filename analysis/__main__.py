@@ -1,5 +1,5 @@
-"""Command line: python3 -m analysis summary RUNS..., plot WHAT RUNS..., figures RUN, view RUN, film RUN, export RUN, status RUNS...,
-verify RUNS..., study [NAME RUNS...], outcome --velocity V ...."""
+"""The command line: python3 -m analysis COMMAND (summary, outcome, plot, figures, view, film, export, status, verify,
+study)."""
 
 import argparse
 import os
@@ -25,7 +25,7 @@ def main(arguments=None):
     try:
         return in_one_line(options)
     except BrokenPipeError:
-        # The reader (head, less) has gone: nothing is left to say, not even at the interpreter's exit.
+        # The reader (head, less) has gone: nothing more may be printed, not even at the interpreter's exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 

@@ -1,6 +1,8 @@
-"""What the public functions are given, checked where it comes in: WrongArgument says which argument, its value and what it must be.
+"""What the public functions are given, checked where it comes in: WrongArgument says which argument, its value and
+what it must be.
 
-@takes(position=numbers("N,3"), radius=numbers("N", POSITIVE), contact_pairs=PAIRS) is all that a function says of it."""
+@takes(position=numbers("N,3"), radius=numbers("N", POSITIVE), contact_pairs=PAIRS) is all that a function says of
+it."""
 
 import os
 from collections.abc import Mapping
@@ -46,8 +48,8 @@ def shown(value):
 
 
 def takes(**kinds):
-    """Decorator of a function whose arguments of these names must be of these kinds: objects with require(name, value, sizes). None passes
-    where it is the default."""
+    """Decorator of a function whose arguments of these names must be of these kinds: objects with require(name,
+    value, sizes). None passes where it is the default."""
 
     def of(function):
         defaults = {name: each.default for name, each in signature(function).parameters.items()}
@@ -77,8 +79,8 @@ ANY = "{} or NaN", lambda x: np.full(np.shape(x), True)
 
 @dataclass(frozen=True)
 class Numbers:
-    """Numbers of a shape, each of which is_right(): letters stand for sizes, one letter for the same in all arguments of a call, N for at
-    least 1; '' is one number, '...' any shape, 'N,3 or 3' either."""
+    """Numbers of a shape, each of which is_right(): letters stand for sizes, one letter for the same in all arguments
+    of a call, N for at least 1; '' is one number, '...' any shape, 'N,3 or 3' either."""
 
     shape: str
     words: str

@@ -61,7 +61,8 @@ def numbers(name, value, shape=None, *, positive=False, least=None, most=None, w
 
 
 def pairs(name, value, grains=None):
-    """Pairs of grains (M, 2) as an array of numpy.intp; an empty list is none. With the number of grains their rows must be below it."""
+    """Pairs of grains (M, 2) as an array of numpy.intp; an empty list is none. With the number of grains their rows
+    must be below it."""
     return numbers(name, value, (None, 2), least=0, most=None if grains is None else grains - 1, whole=True)
 
 

@@ -14,8 +14,6 @@ def require_libraries():
         return
     script = Path(sys.argv[0])
     name = "analysis" if script.name == "__main__.py" else script.name
-    print(
-        f"{name}: {sys.executable} has no {', '.join(missing)}: must be a Python that has (/usr/bin/python3 after make)",
-        file=sys.stderr,
-    )
+    need = "must be a Python that has (/usr/bin/python3 after make)"
+    print(f"{name}: {sys.executable} has no {', '.join(missing)}: {need}", file=sys.stderr)
     sys.exit(2)

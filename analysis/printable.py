@@ -31,7 +31,8 @@ def shell_line(words):
 
 
 def suggested(name, names, many=""):
-    """What a message says of a name that isn't one of `names`: the close one, and which there are, or `many` in place of a long list.
+    """The end of a message about a name that isn't one of `names`: which is close, and all of them, or `many` in
+    place of a long list.
 
     >>> suggested("velocty", ["velocity", "seed"])
     ' (did you mean velocity?); must be one of velocity, seed'

@@ -1,4 +1,4 @@
-"""Progress with the time left, of whatever takes longer than a moment: on a terminal and in a notebook, nothing elsewhere."""
+"""Progress with the time left, on a terminal and in a notebook; nothing elsewhere."""
 
 import sys
 from threading import RLock
@@ -19,8 +19,8 @@ def progress(items, what, total=None):
 
 
 def bar(total, what):
-    """A bar on stderr of `total` things, moved by .update(number); .set_postfix_str() says the time left, .write() prints a line on
-    stdout beside it."""
+    """A bar on stderr of `total` things, moved by .update(number); .set_postfix_str() shows the time left, .write()
+    prints a line on stdout beside it."""
     form = "{desc}: {percentage:3.0f} %|{bar}| {n:.1f} of {total:g} [{elapsed}{postfix}]"
     return tqdm(desc=what, total=total, disable=_disabled(), leave=False, bar_format=form, mininterval=1.0)
 

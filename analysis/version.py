@@ -1,4 +1,5 @@
-"""Version and commit of this suite: VERSION beside this file, and git in a checkout or COMMIT where it is installed (make install).
+"""Version and commit of this suite: VERSION beside this file, and git in a checkout or COMMIT where it is installed
+(make install).
 
 With pip the commit is "unknown"."""
 

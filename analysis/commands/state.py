@@ -86,10 +86,10 @@ def verify(options):
     found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
     found += [(None, f"{folder}: {LOST}") for folder in folders if is_lost(folder)]
     for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
-        problems, said = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)
+        problems, notes = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)
         differs |= bool(problems)
         for text in problems:
             complain(text)
-        for text in said:
+        for text in notes:
             line_beside_bars(f"{path}: {text}")
     return FAILED if differs else 0

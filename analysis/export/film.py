@@ -156,8 +156,8 @@ def _font(size=20):
 
 def _frames_in(file):
     """Number of frames in a film, 0 where it is none."""
-    asked = ["-count_packets", "-select_streams", "v:0", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0"]
-    done = subprocess.run(["ffprobe", "-v", "error", *asked, file], capture_output=True, text=True)
+    counted = ["-count_packets", "-select_streams", "v:0", "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0"]
+    done = subprocess.run(["ffprobe", "-v", "error", *counted, file], capture_output=True, text=True)
     return int(done.stdout) if done.stdout.strip().isdigit() else 0
 
 
@@ -175,7 +175,7 @@ def _encode(frames, file, frames_per_second):
             for frame in chain([first], frames):
                 encoder.stdin.write(frame.tobytes())
         except BrokenPipeError:
-            pass  # it says why below
+            pass  # its last line is raised below
         except BaseException:
             encoder.kill()
             raise

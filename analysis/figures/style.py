@@ -86,7 +86,7 @@ def plain_ticks(axis):
 
 
 def run_title(run, addition=None):
-    """Short description of a run from its parameters; empty when they say nothing known; with an addition."""
+    """Short description of a run from its parameters, as far as they are known, with an addition."""
     p = run.parameters
     known = [
         ("filling", "filling {}"),

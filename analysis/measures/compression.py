@@ -150,7 +150,7 @@ def _hermite_top(t, d, v):
 
 
 def _parabola_vertex(t, d):
-    """Vertex (value, time) of the parabola through three samples of which the middle one is the largest."""
+    """Vertex (value, time) of the parabola through three samples, the middle one being the largest."""
     left, right = (d[1] - d[0]) / (t[1] - t[0]), (d[2] - d[1]) / (t[2] - t[1])
     curvature = (right - left) / (t[2] - t[0])
     if curvature >= 0:

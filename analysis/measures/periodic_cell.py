@@ -172,6 +172,6 @@ def _work_over_volume(history, part, width):
 
 
 def _last_below(below):
-    """Place of the last True of below (T,); None where there is none, or where it is the last of all."""
+    """Place of the last True of below (T,); None if none is, or if it is the last of all."""
     places = np.flatnonzero(below)
     return int(places[-1]) if len(places) and places[-1] + 1 < len(below) else None

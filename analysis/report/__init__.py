@@ -1,1 +1,1 @@
-"""What is said of runs: the summary of one (summary.py), how far many are (status.py), and a PDF of a page (pdf.py)."""
+"""Reports on runs: rows (numbers and tables), text, plot (figures of many runs), status, and a PDF of a page."""

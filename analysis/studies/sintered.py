@@ -148,7 +148,8 @@ def prepared(runs):
     broken, lost = runs[list(BROKEN_BONDS)].sum(axis=1), runs[LOST].sum(axis=1)
     over_line = broken / runs.grains / (AMPLITUDE * runs.energy_ratio**EXPONENT)
     setup = [_setup(row) for row in runs.itertuples()]
-    return runs.assign(setup=setup, broken=broken, necks=broken / runs.grains, over_line=over_line, lost=lost)
+    necks = broken / runs.grains
+    return runs.assign(setup=setup, broken_bonds=broken, necks=necks, over_line=over_line, lost=lost)
 
 
 def _setup(row):
@@ -173,7 +174,7 @@ def critical_velocity(runs):
 def by_mode(mode):
     """Statistic: necks broken by Rolling (...) in % of all; each kind of aggregates and velocity counts once."""
     of_kinds = lambda runs: runs.groupby(["setup", "growth_velocity", "neck", "velocity"]).mean(numeric_only=True).sum()
-    return lambda runs: 100 * of_kinds(runs)[f"brokenBy{mode}"] / of_kinds(runs).broken if len(runs) else nan
+    return lambda runs: 100 * of_kinds(runs)[f"brokenBy{mode}"] / of_kinds(runs).broken_bonds if len(runs) else nan
 
 
 def necks_exponent(runs):
@@ -181,7 +182,7 @@ def necks_exponent(runs):
 
     With the best A for each n it is largest where the mean of x = ln(E_k/E_sint) over broken necks is that over all
     grains weighted with exp(n x)."""
-    x, broken = np.log(runs.energy_ratio.to_numpy()), runs.broken.to_numpy()
+    x, broken = np.log(runs.energy_ratio.to_numpy()), runs.broken_bonds.to_numpy()
     if len(np.unique(x[broken > 0].round(3))) < 2:
         return nan
     target = np.average(x, weights=broken)

@@ -1,4 +1,4 @@
-"""What aggregates are said to be like: elastic constants (A24 section 5.1), strength and coordination number of other
+"""Properties of aggregates: elastic constants (A24 section 5.1), strength and coordination number of other
 preparations (section 5.2). Lengths in m, stresses in Pa."""
 
 from math import pi, sqrt

@@ -10,8 +10,8 @@ MODULI, OFFSET, FILLING, DENSITY = (2.0e6, 20e6), 0.25 * RADIUS, 0.4, 1000.0
 
 
 def integrated(velocity, spheres):
-    """(times [s], compressions [m], velocities [m/s]) of Andrews's spheres until the largest compression and from there until they part, from the
-    force alone (A24 eqs 23, 26, B15, B19, B23, B24)."""
+    """(times [s], compressions [m], velocities [m/s]) of Andrews's spheres until the largest compression and from
+    there until they part, from the force alone (A24 eqs 23, 26, B15, B19, B23, B24)."""
     scale, critical = spheres.reduced_radius, critical_compression(spheres)
     mass, stiffness = 16 * np.pi / 3 * spheres.density * scale**3, 4 / 3 * spheres.young * scale**0.5
 
@@ -31,9 +31,9 @@ def integrated(velocity, spheres):
 
 
 def made_run(path, size, velocity, seed, sticks=False, settles=True, stretch=1.0, **parameters):
-    """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size` [grain radii] would, with
-    compressions and times larger by the factor `stretch`. With `sticks` they stay in contact, and unless `settles` is False come to rest
-    by the end."""
+    """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size` [grain
+    radii] would, with compressions and times larger by the factor `stretch`. With `sticks` they stay in contact, and
+    unless `settles` is False come to rest by the end."""
     spheres = Spheres(0.5 * (size * RADIUS + OFFSET), FILLING * DENSITY, *MODULI)
     at, compression, speed = np.concatenate(integrated(velocity, spheres), axis=1)
     contact = 2.0 * (RADIUS - OFFSET) / velocity

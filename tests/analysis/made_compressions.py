@@ -23,8 +23,8 @@ def compression_record(seed, **others):
 
 
 def compression_history(pressure, low=0.002, high=0.5, stretched=False):
-    """A history: pressure(filling) [Pa], a constant strain rate, rolling until a filling of 0.1 and twisting beyond; the
-    work that the pressure does."""
+    """A history: pressure(filling) [Pa], a constant strain rate, rolling until a filling of 0.1 and twisting beyond;
+    the work that the pressure does."""
     rate, samples = 3e-7, 3000
     filling = np.geomspace(low, high, samples)
     if stretched:

@@ -1,4 +1,5 @@
-"""The formulae of K13, T23 and A24 for aggregates and S17's chain model, against the papers' own numbers, each other and other ways to them."""
+"""The formulae of K13, T23 and A24 for aggregates and S17's chain model, against the papers' own numbers, each other
+and other ways to them."""
 
 import numpy as np
 import pytest

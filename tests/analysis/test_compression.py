@@ -67,7 +67,8 @@ def test_d_max_is_of_the_first_compression():
 
 
 def test_largest_return_speed():
-    """v = cos t falls to -1 at pi; what comes before the largest compression, or is still growing at the end, is not it."""
+    """v = cos t falls to -1 at pi; what comes before the largest compression, or is still growing at the end, is not
+    it."""
     time = np.linspace(0.0, 6.0, 601)
     speed, when = largest_return_speed(time, np.cos(time), np.pi / 2)
     assert speed == pytest.approx(1.0, abs=1e-5) and when == pytest.approx(np.pi, abs=0.01)

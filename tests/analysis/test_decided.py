@@ -1,5 +1,5 @@
-"""When the outcome of a collision, with an aggregate or a plate, is decided: chains of grains in units of a grain's radius, its mass and the energy that
-breaks a contact."""
+"""When the outcome of a collision, with an aggregate or a plate, is decided: chains of grains in units of a grain's
+radius, its mass and the energy that breaks a contact."""
 
 import numpy as np
 import pytest
@@ -20,8 +20,8 @@ LONG = 2 * decided.REBOUND_PER_RADIUS
 
 
 def chain(velocity, broken=(), places=None, bonded=False, small=None):
-    """A state of a straight chain of grains of which the first half, or so small a part, is aggregate 0; velocity (N,) along it, broken:
-    contacts left out."""
+    """A state of a straight chain of grains of which the first half, or so small a part, is aggregate 0; velocity
+    (N,) along it, broken: contacts left out."""
     grains = len(velocity)
     position = np.zeros((grains, 3))
     position[:, 0] = 2 * np.arange(grains) if places is None else places

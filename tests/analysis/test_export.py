@@ -38,7 +38,8 @@ def run(request, tmp_path):
 
 
 def expected(state):
-    """{name: array} of grains and of contacts, and the contacts' ends (M, 2, 3), written without the code under test."""
+    """{name: array} of grains and of contacts, and the contacts' ends (M, 2, 3), written without the code under
+    test."""
     pairs, size = state.contact_pairs, state.cell_size
     between = np.empty((len(pairs), 3))
     for row, (a, b) in enumerate(pairs):

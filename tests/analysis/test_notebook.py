@@ -1,4 +1,5 @@
-"""What the analysis is like in a notebook: names, examples, what a run shows, pickles, tables of runs and of fragments."""
+"""What the analysis is like in a notebook: names, examples, what a run shows, pickles, tables of runs and of
+fragments."""
 
 import doctest
 import pickle

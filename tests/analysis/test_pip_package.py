@@ -19,7 +19,8 @@ print(*(p.relative_to(top.parent) for p in top.rglob("*") if p.is_file() and p.s
 
 @pytest.fixture(scope="module")
 def call(tmp_path_factory):
-    """call(*command) runs in an empty folder with the installed package beside this Python's libraries: what it prints."""
+    """call(*command) runs in an empty folder with the installed package beside this Python's libraries: what it
+    prints."""
     target, elsewhere = tmp_path_factory.mktemp("pip"), tmp_path_factory.mktemp("elsewhere")
     pip = [sys.executable, "-m", "pip", "-q", "install", "--no-deps", f"--target={target}", str(TOP)]
     patience = {"PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "15"}

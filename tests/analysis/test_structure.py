@@ -84,8 +84,8 @@ def test_volume_of_the_zone_is_what_random_points_find(depth, width):
 
 
 def test_filling_of_the_zone_is_one_in_the_mean_and_sees_holes():
-    """40 random packings of 1,000 points in a sphere: 1 to four standard errors of their mean; without points in the zone 0,
-    with those of the zone doubled nearly 2."""
+    """40 random packings of 1,000 points in a sphere: 1 to four standard errors of their mean; without points in the
+    zone 0, with those of the zone doubled nearly 2."""
     random, found = np.random.default_rng(2), []
     for _ in range(40):
         x = random.normal(size=(1000, 3))

@@ -81,9 +81,9 @@ def test_set_ups_stand_beside_each_other_by_pairs(tmp_path):
 
 def test_the_law_of_broken_necks_is_fitted_exactly():
     ratios = np.tile([0.01, 0.3, 1.0, 3.0], 3)
-    rows = pandas.DataFrame({"energy_ratio": ratios, "broken": 2048 * 0.05 * ratios**1.4, "grains": 2048})
+    rows = pandas.DataFrame({"energy_ratio": ratios, "broken_bonds": 2048 * 0.05 * ratios**1.4, "grains": 2048})
     assert necks_exponent(rows) == pytest.approx(1.4)
-    assert necks_exponent(rows.assign(broken=rows.broken.where(rows.energy_ratio > 0.1, 0))) > 1.4
+    assert necks_exponent(rows.assign(broken_bonds=rows.broken_bonds.where(rows.energy_ratio > 0.1, 0))) > 1.4
     assert np.isnan(necks_exponent(rows[rows.energy_ratio == 1.0]))
 
 

@@ -14,8 +14,8 @@ from analysis.theory.jkr import PULL_OFF_OVERLAP
 ICE = theory.pair_constants(theory.ICE, 1e-7)
 SILICATE = theory.pair_constants(theory.SILICATE, 0.6e-6)
 # Sliding is the product of A22 eq 21; printed is pi times it.
-ENERGIES = """unit 4.0e-17; break 6.1e-17; roll_critical 1.2e-18; roll 4.7e-16; slide_critical 7.3e-18; twist_critical 2.8e-18;
-twist 4.4e-16; slide 5.4e-15"""
+ENERGIES = """unit 4.0e-17; break 6.1e-17; roll_critical 1.2e-18; roll 4.7e-16; slide_critical 7.3e-18; twist_critical
+2.8e-18; twist 4.4e-16; slide 5.4e-15"""
 
 
 def viscous(picoseconds, radius=1e-7):
@@ -125,7 +125,8 @@ def test_sticking_and_elastic_rebound_of_ice_grains():
 
 
 def as_printed(velocity, time, pair):
-    """(velocity of parting or None, duration) of a pair by A22 eqs 4, 7, 30 in SI units and another integrator; time: T_vis."""
+    """(velocity of parting or None, duration) of a pair by A22 eqs 4, 7, 30 in SI units and another integrator; time:
+    T_vis."""
 
     def motion(_, state):
         drag = 2 * time * pair.reduced_young / 0.25**2 * theory.contact_radius(state[0], pair) * state[1]
@@ -142,7 +143,8 @@ def as_printed(velocity, time, pair):
 
 @pytest.mark.parametrize("picoseconds, scale", [(0.5, 1), (2, 1), (4.5, 1), (6, 1), (3, 2)])
 def test_sticking_and_rebound_with_drag_against_the_equation_as_printed(picoseconds, scale):
-    """A thousandth less than the threshold a pair sticks, a thousandth more it parts; grains of `scale` times 0.1 um."""
+    """A thousandth less than the threshold a pair sticks, a thousandth more it parts; grains of `scale` times 0.1
+    um."""
     time, pair = picoseconds * 1e-12, viscous(picoseconds, scale * 1e-7)
     threshold = theory.sticking_velocity(pair)
     assert threshold > theory.sticking_velocity_without_drag(pair)
