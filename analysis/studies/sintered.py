@@ -15,8 +15,7 @@ from ..measures.outcome import BOUNCING, STICKING
 from ..measures.structure import gyration_radius
 from ..runs.collect import Scene
 from ..runs.format import BROKEN_BONDS, CHANNELS
-from ..theory.bonds import breaking_energy
-from ..theory.chains import stretching_period
+from ..theory.bonds import breaking_energy, stretching_period
 from ..theory.pair_constants import ICE, pair_constants
 from . import columns
 from .columns import Column, NotMeasured, constant, group, one, parameter

@@ -1,7 +1,7 @@
 """The bond of two equal sintered grains (Sirono & Ueno 2017, S17, section 3). neck: beta, its radius over theirs."""
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, sqrt
 
 from .pair_constants import Material
 
@@ -42,3 +42,9 @@ def neck_length(neck, radius):
 def breaking_energy(neck, radius, surface_energy):
     """E_sint = pi gamma (beta R)^2 [J]: S17 eq 6."""
     return pi * (neck * radius) ** 2 * surface_energy
+
+
+def stretching_period(pair):
+    """Period [s] of two equal grains that vibrate along an unsintered contact, S17's unit of time; pair:
+    PairConstants. At equilibrium dF/d(delta) = (6/5) F_c/delta_0 (S17 eqs 8, 9)."""
+    return 2.0 * pi * sqrt(pair.reduced_mass * pair.equilibrium_overlap / (1.2 * pair.pull_off_force))

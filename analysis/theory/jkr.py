@@ -66,15 +66,6 @@ def normalised_energy(normalised_overlap):
     return np.where(np.isnan(u), 0.0, ENERGY_SCALE * u**4 * (0.8 * u**6 - 4.0 / 3.0 * u**3 + 1.0 / 3.0))[()]
 
 
-def normalised_stiffness(normalised_overlap):
-    """d(F_E/F_c)/dD for D = delta/delta0 (any shape): (24 u^5 - 12 u^2)/(12 u^3 - 2), infinite at the pull-off, 0
-    apart."""
-    u = contact_radius_root(normalised_overlap)
-    slope = 2.0 * (6.0 * u**3 - 1.0)
-    with np.errstate(divide="ignore"):
-        return np.where(np.isnan(u), 0.0, 12.0 * u * u * (2.0 * u**3 - 1.0) / np.maximum(slope, 0.0))[()]
-
-
 def contact_radius(overlap, pair):
     """Contact radius a [m] for an overlap [m] (any shape) of a PairConstants; 0 where the grains are apart. A22 eq
     2."""

@@ -1,11 +1,12 @@
-"""The formulae of K13, T23 and A24 for aggregates and S17's chain model, against the papers' own numbers, each other
-and other ways to them."""
+"""The formulae of K13, T23 and A24 for aggregates, and S17's unit of time, against the papers' own numbers and each
+other."""
 
 import numpy as np
 import pytest
 
 from analysis.studies.elastoplastic.andrews_fit import PRINTED
-from analysis.theory import ICE, SILICATE, aggregates, chains, normal_force, pair_constants
+from analysis.theory import ICE, SILICATE, aggregates, normal_force, pair_constants
+from analysis.theory.bonds import stretching_period
 from analysis.theory.compression import *
 
 R = 1e-7  # of grains [m]
@@ -14,7 +15,6 @@ OVERLAP, FORCE, UNIT = PAIR.equilibrium_overlap, PAIR.pull_off_force, PAIR.time_
 ENERGY = rolling_energy(0.1, R, 0.8e-9)
 SCALE = strength_scale(ENERGY, R)
 MASS = 4 / 3 * np.pi * ICE.density * R**3
-GRAIN = (R, ICE.young, MASS, ICE.surface_energy)
 
 
 def test_numbers_of_k13():
@@ -68,45 +68,10 @@ def test_bulk_modulus_is_that_of_springs_on_the_lattice():
     assert found == pytest.approx(expected, rel=1e-12)
 
 
-def test_eq_16_from_counting_grains_and_contacts():
-    """3N - 3 contact points of (3N - 5)/2 grains in a cell (S17 eq 15)."""
-    for grains in (4.0, 7.0, 50.0):
-        assert chains.chain_of_contacts((3 * grains - 3) / ((3 * grains - 5) / 2)) == pytest.approx(grains)
-    assert np.isinf(chains.chain_of_contacts(2.0)) and chains.chain_of_contacts(3.0) == pytest.approx(3.0)
-
-
-def test_neck_of_the_kernel():
-    """k_sr = pi a^4 E/(4 d); d = 2 R x/(R + x), worked out by hand for beta = 1/2: x = R/4, d = 2R/5."""
-    expected = np.pi * (0.5 * R) ** 4 * ICE.young / (4 * 0.4 * R)
-    assert chains.rolling_stiffness(0.5, R, ICE.young) == pytest.approx(expected)
-
-
-def test_force_balances_the_kinetic_energy_and_its_limits():
-    """k u^2/2 = N m V^2/4 a chain, F = k u."""
-    stiffness = chains.chain_stiffness(12.0, 0.6, R, ICE.young)
-    force = chains.largest_force(7.0, 12.0, 0.6, R, ICE.young, MASS)
-    stretch = force / stiffness
-    assert 0.5 * stiffness * stretch**2 == pytest.approx(12.0 * MASS * 7.0**2 / 4)
-    assert chains.largest_force(10.0, np.inf, 0.7, R, ICE.young, MASS) == 0
-    assert np.isinf(chains.sticking_ratio(10.0, np.inf, 0.7, *GRAIN))
-    with pytest.raises(ValueError, match="must be above 3"):
-        chains.chain_stiffness(3.0, 0.7, R, ICE.young)
-    thousand = chains.chain_stiffness(np.array([1e3, 2e3]), 0.7, R, ICE.young)
-    assert thousand[0] / thousand[1] == pytest.approx(8.0, rel=0.01)  # bending: as the length's inverse cube
-
-
-def test_what_the_text_says_of_fig_17():
-    """Almost unity with the loops of 44 grains at 10 m/s; BCCA aggregates (N = 100) would stick there."""
-    ratio = lambda velocity, grains, beta: chains.sticking_ratio(velocity, grains, beta, *GRAIN)
-    assert 0.5 < ratio(10.0, 22.0, 0.7) < 1.0
-    assert ratio(10.0, 100.0, 0.7) > 3
-    assert ratio(3.0, 5.4, 0.2) == pytest.approx(1.0, abs=0.02) and ratio(1.0, 6.0, 0.7) > 1
-
-
 def test_period_is_that_of_small_vibrations():
     """Against the JKR force's slope at equilibrium, by differences."""
     step = 1e-5 * PAIR.equilibrium_overlap
     below, above = (normal_force(PAIR.equilibrium_overlap + change, PAIR) for change in (-step, step))
     slope = (above - below) / (2 * step)
-    assert chains.stretching_period(PAIR) == pytest.approx(2 * np.pi * np.sqrt(PAIR.reduced_mass / slope), rel=1e-6)
-    assert 20_000 * chains.stretching_period(PAIR) == pytest.approx(24.4e-6, rel=2e-3)
+    assert stretching_period(PAIR) == pytest.approx(2 * np.pi * np.sqrt(PAIR.reduced_mass / slope), rel=1e-6)
+    assert 20_000 * stretching_period(PAIR) == pytest.approx(24.4e-6, rel=2e-3)

@@ -8,7 +8,7 @@ in random orientations, until it has 1,024 grains: each collision's largest piec
 (yade_scripts/packings/from_run.py).
 
 The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
-needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (analysis/theory/chains.py). One collision, START = 512, gives
+needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (by eqs 14 to 19). One collision, START = 512, gives
 2.15, 2.49 and 3.01 at 1, 3 and 10 m/s (one seed). Six from START = 16 gave 2.5, 2.9 and 3.2, which Figs 6 and 17 exclude. So it is 512.
 
 A generation in which the largest piece has less than STUCK of the grains is tried again in other orientations, ATTEMPTS times.
