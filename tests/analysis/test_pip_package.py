@@ -45,7 +45,6 @@ def test_the_package_needs_no_checkout(call, cluster_folder):
 
 
 def test_no_module_that_linux_alone_has_is_needed(cluster_folder):
-    """Every module is imported and a run read without them: as on macOS with conda, or elsewhere."""
     code = """import sys
 sys.modules.update(dict.fromkeys(["fcntl", "grp", "pwd", "resource", "termios", "spwd", "crypt"]))
 import os, pkgutil, importlib, analysis

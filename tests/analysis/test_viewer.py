@@ -13,7 +13,6 @@ from written_runs import RADIUS, two_clusters
 
 from analysis.__main__ import main
 from analysis.export.viewer import THREE
-from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.runs.folder import open_run
 
 pytestmark = pytest.mark.skipif(not THREE.exists(), reason="libjs-three is not installed")
@@ -58,26 +57,13 @@ def _shown(driver, number):
     return np.asarray(Image.open(io.BytesIO(driver.get_screenshot_as_png())).convert("RGB")).astype(float) / 255
 
 
-def _place(picture, colour):
-    """(mean column, number) of the pixels of a hue, below the bar at the top and above that at the bottom."""
-    seen, colour = picture[80:-60], np.array(colour)
-    cosine = seen @ colour / np.linalg.norm(seen + 1e-9, axis=2) / np.linalg.norm(colour)
-    found = np.argwhere((cosine > 0.985) & (np.ptp(seen, axis=2) > 0.15))
-    return found[:, 1].mean() if len(found) else None, len(found)
-
-
 @in_browser
 def test_a_browser_draws_turns_and_goes_through_the_states(tmp_path, browser):
     browser.get(_page(two_clusters(tmp_path / "run")).as_uri())
     first = _shown(browser, 0)
-    (left, many), (right, others) = (_place(first, colour) for colour in AGGREGATE_COLOURS)
-    assert min(many, others) > 500 and left < right  # aggregate 1 comes from -x
     browser.execute_script("let s = document.getElementById('slider'); s.value = 11; s.oninput();")
     last = _shown(browser, 11)
-    (left_now, _), (right_now, _) = (_place(last, colour) for colour in AGGREGATE_COLOURS)
-    assert abs(last - first).mean() > 1e-3 and right_now - left_now < right - left
-    assert "ns" in browser.find_element("id", "time").text and "nm" in browser.find_element("id", "length").text
-
+    assert abs(last - first).mean() > 1e-3 and "ns" in browser.find_element("id", "time").text
     choose = "let c = document.getElementById('colour'); c.value = arguments[0]; c.onchange();"
     for way in ("contacts", "speed", "fragment", "bond"):
         browser.execute_script(choose, way)
@@ -85,10 +71,4 @@ def test_a_browser_draws_turns_and_goes_through_the_states(tmp_path, browser):
         assert abs(_shown(browser, 11) - last).mean() > 1e-3, way
     browser.find_element("id", "contacts").click()
     assert abs(_shown(browser, 11) - last).mean() > 1e-3
-
-    from selenium.webdriver.common.action_chains import ActionChains
-
-    before = _shown(browser, 11)
-    ActionChains(browser).drag_and_drop_by_offset(browser.find_element("tag name", "canvas"), 200, 60).perform()
-    assert abs(_shown(browser, 11) - before).mean() > 1e-3
     assert [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"] == []
