@@ -22,18 +22,19 @@ from ...progress import progress
 from ...runs.files import replacing
 from .dustpy import use_atlas
 
-YEARS = 1e5
-FILLING = 0.3
-# Name: how the atlas is used, and the title.
-RUNS = {
-    "dustpy": (None, "DustPy: breaks above 1 m/s"),
-    "clamp": ({"outside": "clamp"}, "the atlas, beyond its data the nearest of it"),
-}
-HATCHED = 0.5  # of the collisions of a mass bin are outside of the data
+YEARS, FILLING = 1e5, 0.3
+TITLES = {"dustpy": "DustPy: breaks above 1 m/s", "clamp": "the atlas, beyond its data the nearest of it"}
 
 
-def make_disk():
-    """An initialised dustpy.Simulation of this module's disk. ImportError without DustPy."""
+def run(outcomes, with_atlas):
+    """The disk after YEARS. ImportError without DustPy.
+
+    Returns
+    -------
+    dict
+        sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report (JSON). With
+        DustPy alone `outside` and `report` are those of the atlas in the same disk.
+    """
     from dustpy import Simulation, constants, std
 
     sim = Simulation(verbosity=0)
@@ -46,33 +47,18 @@ def make_disk():
     sim.dust.Sigma[...] = std.dust.MRN_distribution(sim)  # its largest size follows from the filling
     sim.update()
     sim.t.snapshots = np.array([YEARS]) * constants.year
-    return sim
-
-
-def run(outcomes, how):
-    """The disk after YEARS, with options `how` of use_atlas(), or with DustPy alone (None).
-
-    Returns
-    -------
-    dict
-        sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report (JSON). With
-        DustPy alone `outside` and `report` are those of the atlas in the same disk.
-    """
-    from dustpy import constants
-
-    sim = make_disk()
-    atlas = None if how is None else use_atlas(sim, outcomes, **how)
+    atlas = use_atlas(sim, outcomes) if with_atlas else None
     sim.run()
     mass = float((sim.dust.Sigma * sim.grid.A[:, None]).sum() / constants.M_earth)
     atlas = atlas or use_atlas(sim, outcomes)
-    spacing = float(np.log(sim.grid.m[1] / sim.grid.m[0])) / 3.0
-    return {
-        "sigma": np.asarray(sim.dust.Sigma) / spacing,
+    arrays = {
+        "sigma": sim.dust.Sigma / (np.log(sim.grid.m[1] / sim.grid.m[0]) / 3.0),
         "outside": atlas.outside_of_bins(sim),
-        "size": np.asarray(sim.dust.a),
-        "radius": np.asarray(sim.grid.r) / constants.au,
-        "report": json.dumps({"dust in Earth masses": mass, **atlas.report(sim)}),
+        "size": sim.dust.a,
+        "radius": sim.grid.r / constants.au,
     }
+    report = json.dumps({"dust in Earth masses": mass, **atlas.report(sim)})
+    return {"report": report, **{name: np.asarray(values, dtype=np.float32) for name, values in arrays.items()}}
 
 
 @styled
@@ -87,9 +73,9 @@ def figure(runs):
         with np.errstate(divide="ignore"):
             filled = panel.contourf(radius, size, np.log10(run["sigma"]), levels=levels, cmap="viridis", extend="min")
         if name != "dustpy":
-            mostly = np.where(run["outside"] > HATCHED, 1.0, 0.0)
+            mostly = np.where(run["outside"] > 0.5, 1.0, 0.0)
             panel.contourf(radius, size, mostly, levels=[0.5, 1.5], colors="none", hatches=["///"])
-        panel.set(xscale="log", yscale="log", xlabel="distance from the star [au]", title=RUNS[name][1])
+        panel.set(xscale="log", yscale="log", xlabel="distance from the star [au]", title=TITLES[name])
         panel.set_ylim(size.min(), 1e2)
     panels[0].set_ylabel("radius of the aggregates [cm]")
     drawing.colorbar(filled, ax=panels, label="log surface density [g/cm$^2$ per ln a]", shrink=0.9)
@@ -102,26 +88,23 @@ def main(folder):
     outcomes, kept = folder / "outcomes.txt", folder / "disk.npz"
     table = hashlib.sha256(outcomes.read_bytes()).hexdigest()
     if not kept.exists():
-        runs = {name: run(outcomes, how) for name, (how, _) in progress(RUNS.items(), "disk")}
-        arrays = {f"{name} {key}": _small(value) for name, values in runs.items() for key, value in values.items()}
+        runs = {name: run(outcomes, name == "clamp") for name in progress(TITLES, "disk")}
+        arrays = {f"{name} {key}": value for name, values in runs.items() for key, value in values.items()}
         with replacing(kept) as file:
             np.savez_compressed(file, table=table, **arrays)
-    with np.load(kept) as arrays:
-        if str(arrays["table"]) != table:
-            print(f"{kept}: of another table than {outcomes}; must be removed to be made again", file=sys.stderr)
-            return 2
-        runs = {
-            name: {key: arrays[f"{name} {key}"] for key in ("sigma", "outside", "size", "radius", "report")}
-            for name in RUNS
-        }
+    with np.load(kept) as file:
+        arrays = dict(file)
+    if str(arrays.pop("table")) != table:
+        print(f"{kept}: of another table than {outcomes}; must be removed to be made again", file=sys.stderr)
+        return 2
+    runs = {name: {} for name in TITLES}
+    for key, value in arrays.items():
+        name, _, what = key.partition(" ")
+        runs[name][what] = value
     for name, values in runs.items():
         print(name, values["report"])
     save_small(figure(runs), folder / "disk.png")
     return 0
-
-
-def _small(value):
-    return value if isinstance(value, str) else np.asarray(value, dtype=np.float32)
 
 
 if __name__ == "__main__":
