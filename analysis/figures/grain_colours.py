@@ -8,27 +8,16 @@ import numpy as np
 
 from ..progress import progress
 
-AGGREGATE_COLOURS = ((0.92, 0.60, 0.18), (0.24, 0.52, 0.82))
-GREY, BONDED = (0.75, 0.75, 0.75), (0.80, 0.25, 0.25)
-PIECES = (
-    (0.24, 0.52, 0.82),
-    (0.92, 0.60, 0.18),
-    (0.30, 0.65, 0.35),
-    (0.75, 0.35, 0.60),
-    (0.55, 0.45, 0.30),
-    (0.35, 0.70, 0.75),
-)
-SCALE = (  # matplotlib's viridis in even steps, without matplotlib
-    (0.267, 0.005, 0.329),
-    (0.279, 0.175, 0.483),
-    (0.230, 0.322, 0.546),
-    (0.173, 0.449, 0.558),
-    (0.128, 0.567, 0.551),
-    (0.158, 0.684, 0.502),
-    (0.369, 0.789, 0.383),
-    (0.678, 0.864, 0.190),
-    (0.993, 0.906, 0.144),
-)
+
+def _rgb(codes):
+    """Colours (red, green, blue), 0 to 1, of hexadecimal codes."""
+    return tuple(tuple(int(code[k : k + 2], 16) / 255 for k in (0, 2, 4)) for code in codes.split())
+
+
+AGGREGATE_COLOURS = _rgb("eb992e 3d85d1")
+GREY, BONDED = _rgb("bfbfbf cc4040")
+PIECES = _rgb("3d85d1 eb992e 4da659 bf5999 8c734d 59b3bf")
+SCALE = _rgb("440154 472d7b 3b528b 2c728e 21918c 28ae80 5ec962 addc30 fde725")  # matplotlib's viridis, without it
 MOST_CONTACTS = 8
 _FAST = 99.0  # percentile of the speeds at which the scale ends
 
