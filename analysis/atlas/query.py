@@ -79,30 +79,16 @@ def outcome(
     ValueError
         In one line.
     """
-    speed = numbers("velocity", velocity, least=0)
-    projectile, target = numbers("projectile", projectile, least=1), numbers("target", target, least=1)
-    filling = numbers("filling", filling, positive=True, most=1)
-    square = {} if impact is None else {"impact_square": numbers("impact", impact, least=0, most=1) ** 2}
-    if material not in MATERIALS:
-        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
     if structure not in (None, *STRUCTURES):
         raise ValueError(f"structure = {structure}: must be {' or '.join(STRUCTURES)}")
     if file and structure:
         raise ValueError(f"file = {file}: must be left out with a structure, which says which of the atlas's files")
+    query = coordinates(velocity, projectile, target, filling, material, grain_radius, impact)
     table = _table(file or outcomes_file(structure or GROWN, impact is None), maxwell)
-    large, small = np.maximum(projectile, target), np.minimum(projectile, target)
-    ratio = small / large
-    query = {
-        "velocity": speed / breaking_velocity(MATERIALS[material], radius_of(material, grain_radius)),
-        "grains": large,
-        "mass_ratio": ratio,
-        "filling": filling,
-        **square,
-    }
     needed = columns
     if columns is not None and "second" in columns:
         needed = (*columns, "largest")  # which bounds it
-    found = table.lookup(needed, **query)
+    found, ratio = table.lookup(needed, **query), query["mass_ratio"]
     for name in set(GAINING) & set(found):
         found[name] = np.asarray(largest_after(found[name], ratio))
     if "second" in found:
@@ -111,6 +97,23 @@ def outcome(
     for name in {*ERRORS, *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
     return {name: values for name, values in found.items() if columns is None or name in (*columns, INSIDE)}
+
+
+def coordinates(velocity, projectile, target, filling, material, grain_radius, impact):
+    """{axis of the tables: array} of arguments of outcome(); ValueError for what they cannot be."""
+    if material not in MATERIALS:
+        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
+    v_break = breaking_velocity(MATERIALS[material], radius_of(material, grain_radius))
+    projectile, target = numbers("projectile", projectile, least=1), numbers("target", target, least=1)
+    large, small = np.maximum(projectile, target), np.minimum(projectile, target)
+    square = {} if impact is None else {"impact_square": numbers("impact", impact, least=0, most=1) ** 2}
+    return {
+        "velocity": numbers("velocity", velocity, least=0) / v_break,
+        "grains": large,
+        "mass_ratio": small / large,
+        "filling": numbers("filling", filling, positive=True, most=1),
+        **square,
+    }
 
 
 def radius_of(material, grain_radius=None):
@@ -142,67 +145,49 @@ def _table(file, maxwell):
     return replace(table, values=values)
 
 
+LABELS = {
+    "p_touching": "fraction of such pairs that touch",
+    "largest": "largest piece, of the mass",
+    "second": "second largest",
+    "fragment_index": "n of dN/dm ~ m^-n of all but the largest",
+    "filling_after": "filling of the largest piece",
+}
+
+
 def in_words(options):
-    """Lines (str): the query, whether it is within the data, probabilities, what is left, and the nearest runs."""
-    averaged = options.impact == "averaged"
-    answer = outcome(
-        options.velocity,
-        options.projectile,
-        options.target,
-        options.filling,
-        material=options.material,
-        grain_radius=options.grain_radius,
-        maxwell=options.maxwell,
-        impact=None if averaged else options.impact,
-        structure=options.structure,
+    """Lines (str) for the options of commands.outcome: the query, whether it is within the data, probabilities, what is
+    left, and the nearest runs."""
+    pair = options.velocity, options.projectile, options.target, options.filling
+    impact = None if options.impact == "averaged" else options.impact
+    more = {"material": options.material, "grain_radius": options.grain_radius, "impact": impact}
+    found = outcome(*pair, maxwell=options.maxwell, structure=options.structure, **more)
+    answer = {name: float(value) for name, value in found.items()}
+    point = pandas.DataFrame([{"impact_square": 0.5} | coordinates(*pair, **more)]).astype(float)
+    speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
+    yield (
+        f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of "
+        f"{options.material}, radius {1e6 * radius_of(options.material, options.grain_radius):g} um, "
+        f"filling {options.filling:g}, {options.velocity:g} m/s ({point.velocity[0]:.3g} v_break{speeds}), "
+        + ("averaged over impact parameters:" if impact is None else f"b = {impact:g}:")
     )
-    answer = {name: float(value) for name, value in answer.items()}
-    point = _point(options)
-    # None where it is installed without the repository's tables of runs.
-    region = Region(of_structure(read_runs(RUNS_FILE), options.structure)) if RUNS_FILE.exists() else None
     known = np.isfinite(answer[ERRORS[0]])
     without = "" if known else "; the answer is that of the nearest data, its error is not known"
-    lines = [_title(options, point), *(line + without for line in _beyond(region, point, answer["inside"]))]
+    # The repository has the runs, an installed package has not.
+    region = Region(of_structure(read_runs(RUNS_FILE), options.structure)) if RUNS_FILE.exists() else None
+    yield from (line + without for line in _beyond(region, point, answer["inside"]))
     for kind, name, error in zip(KINDS, PROBABILITIES, ERRORS):
         low, high = np.clip([answer[name] - answer[error], answer[name] + answer[error]], 0, 1)
         interval = f"  ({low:.3f} to {high:.3f})" if known else ""
-        lines.append(f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}{interval}")
-    for label, name, of_which in (
-        ("fraction of such pairs that touch", "p_touching", ""),
-        ("largest piece, of the mass", "largest", "where there are more: "),
-        ("second largest", "second", ""),
-        ("n of dN/dm ~ m^-n of all but the largest", "fragment_index", ""),
-        ("filling of the largest piece", "filling_after", ""),
-    ):
+        yield f"  {kind.replace('_', ' '):<42} {answer[name]:.3f}{interval}"
+    for name, label in LABELS.items():
         low, high = (answer.get(f"{name}_{end}", np.nan) for end in ("low", "high"))
-        interval = f" ({of_which}{low:.3g} to {high:.3g} in 90 %)" if np.isfinite(low) else ""
-        lines.append(f"  {label:<42} {answer[name]:.3g}{interval}")
-    return [*lines, *_nearest(region, point, averaged)]
-
-
-def _point(options):
-    """The query as a row of atlas.variables.variables()."""
-    large, small = max(options.projectile, options.target), min(options.projectile, options.target)
-    radius = radius_of(options.material, options.grain_radius)
-    point = {
-        "velocity": options.velocity / breaking_velocity(MATERIALS[options.material], radius),
-        "grains": large,
-        "mass_ratio": small / large,
-        "filling": options.filling,
-        "impact_square": 0.5 if options.impact == "averaged" else options.impact**2,
-    }
-    return pandas.DataFrame([point])
-
-
-def _title(options, point):
-    impact = "averaged over impact parameters" if options.impact == "averaged" else f"b = {options.impact:g}"
-    speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
-    radius = 1e6 * radius_of(options.material, options.grain_radius)
-    return (
-        f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of "
-        f"{options.material}, radius {radius:g} um, filling {options.filling:g}, {options.velocity:g} m/s "
-        f"({point.velocity[0]:.3g} v_break{speeds}), {impact}:"
-    )
+        which = "where there are more: " if name == "largest" else ""
+        interval = f" ({which}{low:.3g} to {high:.3g} in 90 %)" if np.isfinite(low) else ""
+        yield f"  {label:<42} {answer[name]:.3g}{interval}"
+    if region is not None:
+        yield "nearest runs:"
+        for run in region.runs.iloc[region.nearest(point, impact is None)[0]].itertuples():
+            yield from _run(run)
 
 
 def _beyond(region, point, inside):
@@ -221,19 +206,15 @@ def _beyond(region, point, inside):
         yield f"  at the edge of the data: inside = {inside:.4g} in the table of outcomes"
 
 
-def _nearest(region, point, averaged):
-    """Lines on the nearest runs, and how to run each again."""
-    if region is None:
-        return
-    yield "nearest runs:"
-    for run in region.runs.iloc[region.nearest(point, averaged)[0]].itertuples():
-        yield (
-            f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, "
-            f"filling {run.filling_target:.2g}, {run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: "
-            f"{run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"
-        )
-        part = f"{run.number}-{run.number + 1}"
-        yield (
-            f"    python3 yade_scripts/studies/atlas.py full {part.replace('-', ' ')} && "
-            f"python3 yade_scripts/study.py runs/atlas-full-{part}.table"
-        )
+def _run(run):
+    """What became of a run, a row of the table, and how to run it again."""
+    yield (
+        f"  {run.run}: {run.structure}, {run.material}, {run.grains_projectile} and {run.grains_target} grains, "
+        f"filling {run.filling_target:.2g}, {run.velocity / run.v_break:.3g} v_break, b = {run.impact:.2g}: "
+        f"{run.outcome.replace('_', ' ')}, largest {run.largest:.2g}"
+    )
+    first, last = run.number, run.number + 1
+    yield (
+        f"    python3 yade_scripts/studies/atlas.py full {first} {last} && "
+        f"python3 yade_scripts/study.py runs/atlas-full-{first}-{last}.table"
+    )

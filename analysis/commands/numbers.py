@@ -106,7 +106,7 @@ def outcome(options):
     from ..atlas.query import in_words
 
     try:
-        lines = in_words(options)
+        lines = list(in_words(options))
     except ValueError as error:
         complain(error)
         return FAILED
