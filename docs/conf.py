@@ -19,7 +19,13 @@ import analysis
 import contact_law  # noqa: F401 (JKRMat and the others, for autodoc)
 
 project, release = "Cohesive dust aggregates in YADE", analysis.__version__
-extensions = ["myst_parser", "nbsphinx", "sphinx.ext.autodoc", "IPython.sphinxext.ipython_console_highlighting"]
+extensions = [
+    "myst_parser",
+    "nbsphinx",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "IPython.sphinxext.ipython_console_highlighting",
+]
 root_doc = "docs/index"
 include_patterns = [
     "docs/*",
@@ -83,13 +89,12 @@ def readable(app, what, name, thing, options, lines):
 
 
 def _paragraph(text):
-    if text.startswith(">>>"):
-        return text
     if text.startswith("    "):
         return "::\n\n" + text
-    return re.sub(r"([\\*`|_])", r"\\\1", text)
+    text, example, code = text.partition(">>>")
+    return re.sub(r"([\\*`|_])", r"\\\1", text) + example + code
 
 
 def setup(app):
     app.add_directive("help", Help)
-    app.connect("autodoc-process-docstring", readable)
+    app.connect("autodoc-process-docstring", readable, priority=400)  # before napoleon reads the sections

@@ -138,8 +138,7 @@ class RunFolder:
 
     @property
     def last(self):
-        """The last state: the end of a run that ended, how far it came otherwise; RunFolderError when there is
-        none."""
+        """The last state, which is the end of a run that ended; RunFolderError when there is none."""
         return self._state(-1)
 
     def _state(self, index):
