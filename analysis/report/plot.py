@@ -17,7 +17,8 @@ from .rows import at_end, differing, parameters, table, varied
 
 LARGEST = "largest_fraction"
 WHATS = {"sticking": ["outcome"], "largest": [LARGEST], "energy": [at_end(channel) for channel in CHANNELS]}
-FILES = "file", "projectileFile"  # with the seed, what tells pairs of aggregates apart
+FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggregates
+OF_MAXIMUM = {"d_max", "t_max"}
 CURVES = ("#2166ac", "#1b8a8f", "#e08214", "#c62828", "#8c5a2b", "#d16ba5", "#111111")
 MARKERS, LINES = "osD^vP", ("-", "--", "-.", ":")
 APART, MOST_APART = 5.0, 20.0  # points between two curves, and between the first and the last
@@ -29,19 +30,8 @@ class CannotPlot(ValueError):
 
 
 def exact_interval(successes, trials, confidence=0.95):
-    """Exact interval of a probability from independent trials (Clopper & Pearson 1934).
+    """(low, high): the exact interval of a probability from independent trials (Clopper & Pearson 1934).
 
-    Parameters
-    ----------
-    successes, trials : int
-    confidence : float
-
-    Returns
-    -------
-    low, high : float
-
-    Examples
-    --------
     >>> [round(bound, 4) for bound in exact_interval(5, 10)], exact_interval(0, 10)[0], exact_interval(10, 10)[1]
     ([0.1871, 0.8129], 0.0, 1.0)
     """
@@ -54,8 +44,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
 
     Pairs are told apart by their seed and files. Bars are standard errors of the mean over pairs; open points are
     single pairs. Of "sticking" they are exact 95 % intervals that count undecided runs, and those that have not
-    ended, either way; points are fractions of the decided runs, and runs that never met are left out. Runs of a kind
-    without x or without a value are left out and counted in the title.
+    ended, either way, and points are fractions of the decided runs; runs that never met are left out. So are runs
+    without a value, or with a d_max that is only a bound; the title counts them.
 
     Parameters
     ----------
@@ -67,7 +57,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     x : str
         Column of numbers.
     by : str
-        Column that tells curves (of "energy" panels) apart.
+        Column that distinguishes curves (of "energy" panels).
     where : dict, optional
         {column: value} of the runs that are drawn.
     logarithmic : str, optional
@@ -90,12 +80,11 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     _require_columns(found, what, x, by, where or {}, seed)
     for name, value in (where or {}).items():
         found = _only(found, name, value)
-    wanted = found
-    found = _of_kinds(found, [x, *WHATS.get(what, [what])])
-    lacking = _lacking(found, what, x, by)
-    found = found[~lacking.to_numpy().any(axis=1)]
+    wanted, found = found, _complete(found, what, x, by)
     _require_drawable(found, what, x, by, seed)
-    title = _title(found, what, wanted, lacking)
+    undecided = int(_undecided(found).sum())
+    title = f"{len(found)} runs" + (f", {len(wanted) - len(found)} left out" if len(found) < len(wanted) else "")
+    title += f", {undecided} undecided or not ended" if undecided else ""
     files = [name for name in FILES if name in found and found[name].notna().any()]
     found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
     for name in filter(None, (x, by)):
@@ -112,7 +101,7 @@ def _require_columns(found, what, x, by, where, seed):
         if name not in found and not (name == what and what in WHATS):
             names = (*WHATS, *found) if name == what else found
             raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
-    own = [seed, "outcome", "ended", "kind"] + ["maximum_inside"] * bool({"d_max", "t_max"} & {what, x, by})
+    own = [seed, "outcome", "ended", "kind"] + ["maximum_inside"] * bool(OF_MAXIMUM & {what, x, by})
     missing = [name for name in dict.fromkeys((*WHATS.get(what, ()), *own)) if name not in found]
     if missing:
         raise CannotPlot(f"table of runs: lacks {', '.join(missing)}; must be as analysis.table() gives it")
@@ -134,20 +123,14 @@ def _only(found, name, value):
     return found[same]
 
 
-def _of_kinds(found, columns):
-    """The runs of the kinds that have values in all columns; all of them if no kind has."""
-    having = found[columns].notna().groupby(found["kind"]).any().all(axis=1)
-    kept = found[found["kind"].map(having)]
-    return kept if len(kept) else found
-
-
-def _lacking(found, what, x, by):
-    """{why: whether runs (n,) can't be drawn} as a DataFrame: without a value, or d_max is but a bound."""
-    shown = () if what in ("sticking", "energy") else WHATS.get(what, [what])
-    why = {f"without {name}": found[name].isna() for name in dict.fromkeys((x, by, *shown)) if name}
-    for name in {"d_max", "t_max"} & {what, x, by}:
-        why[f"whose {name} is only a bound"] = found.maximum_inside.eq(False)
-    return pandas.DataFrame(why, found.index)
+def _complete(found, what, x, by):
+    """The runs that have all that is drawn."""
+    kept = found[[x, *([by] if by else []), *WHATS.get(what, [what])]].notna().all(axis=1)
+    if OF_MAXIMUM & {what, x, by}:
+        kept &= found.maximum_inside.eq(True)
+    if what == "sticking":
+        kept &= found.outcome != NEVER_MET
+    return found[kept]
 
 
 def _require_drawable(found, what, x, by, seed):
@@ -164,20 +147,8 @@ def _require_drawable(found, what, x, by, seed):
 
 
 def _undecided(found):
-    """Whether runs have no outcome that counts (n,): they say so, or have not ended."""
+    """Whether runs have no outcome that counts (n,): they are undecided, or have not ended."""
     return found.outcome.map(lambda text: str(text).startswith(UNDECIDED)) | ~found.ended.astype(bool)
-
-
-def _title(found, what, wanted, lacking):
-    """How many runs there are, and how many never met, have no outcome that counts, or are left out."""
-    missed, sticking = found.outcome == NEVER_MET, what == "sticking"
-    undecided = int((_undecided(found) & ~(missed & sticking)).sum())
-    others = wanted["kind"][~wanted.index.isin(lacking.index)].value_counts()
-    text = f"{len(found)} runs" + "".join(f", {number} of the kind {kind} left out" for kind, number in others.items())
-    text += "".join(f", {own.sum()} {name} left out" for name, own in lacking.items() if own.any())
-    text += f", {missed.sum()} {'that never met left out' if sticking else 'of them never met'}" if missed.any() else ""
-    text += f", {undecided} of them undecided or not ended" if undecided else ""
-    return text + (" (in the bars, counted either way)" if undecided and sticking else "")
 
 
 def _rounded(value):
@@ -196,7 +167,6 @@ def _logarithmic(found, x, wanted):
 
 def _sticking(found, x):
     """DataFrame by x of the fractions of the decided runs that stick, with exact intervals."""
-    found = found[found.outcome.notna() & (found.outcome != NEVER_MET)]
     rows = {}
     for value, own in found.groupby(x):
         twice = own.pair.duplicated(keep=False)
