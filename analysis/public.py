@@ -8,9 +8,9 @@ from .measures.fragments import fragment_sizes, fragments, growth_efficiency
 from .measures.ledger import closure, fractions_at, total_energy
 from .measures.structure import correlation_dimension, filling_factor, grains_within, gyration_radius
 from .measures.structure import inner_coordination, mean_coordination
-from .report.plot import exact_interval, plot
 from .report.rows import summarise, table
 from .runs.files import RunFolderError
 from .runs.folder import RunFolder, State, open_run
+from .studies.plot import plot
 
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -85,8 +85,7 @@ def _add_plot(commands):
     parser = commands.add_parser(
         "plot",
         help="draw a quantity of many runs against one of their parameters",
-        description="Draw sticking (fraction of the decided runs that stick, with exact 95 % intervals, which count "
-        "undecided runs either way; those that never met are left out), largest (mass of the largest piece), energy "
+        description="Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), energy "
         "(where it went, by channel), or any column of analysis.table against another, with standard errors over the "
         "pairs of aggregates; write a PNG and print its path.",
     )
@@ -116,9 +115,9 @@ def _condition(text):
 
 def draw_plot(options):
     """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
-    from ..report.plot import plot
     from ..report.rows import frame, measure, row
     from ..runs.files import replacing
+    from ..studies.plot import plot
 
     file = Path(options.out or f"{options.what}-{options.x}.png")
     if file.suffix != ".png":

@@ -16,14 +16,18 @@ import pandas
 from scipy.stats import binomtest, fisher_exact
 from scipy.stats import t as student
 
-from ..report.plot import exact_interval
-
 CONFIDENCE = 0.95
 DRAWS = 1000
 RANDOM_SEED = 20240124
 LOST = 0.05  # with this part of the draws undefined or more, the others would tell too small an error
 ROUNDING = 1e-12  # relative: draws that differ by less are the same number, rounded differently
 EXACT = math.inf  # pairs behind a number that has no scatter: a closed form
+
+
+def exact_interval(successes, trials, confidence):
+    """(low, high): the exact interval of a probability (Clopper & Pearson 1934)."""
+    interval = binomtest(int(successes), int(trials)).proportion_ci(confidence, method="exact")
+    return float(interval.low), float(interval.high)
 
 
 @lru_cache(maxsize=5000)

@@ -18,7 +18,19 @@ HELD = 0.99  # of the grains: what flies farther than all but the last hundredth
 
 @styled
 def curves(
-    runs, of, x, colour="", panel="", log="", paper=None, level=None, limits=None, line="-", x_label="", y_label=""
+    runs,
+    of,
+    x,
+    colour="",
+    panel="",
+    log="",
+    paper=None,
+    level=None,
+    limits=None,
+    line="-",
+    x_label="",
+    y_label="",
+    palette=None,
 ):
     """Figure of estimates against a column of the table of runs, with standard errors.
 
@@ -42,6 +54,8 @@ def curves(
         Of the ordinate.
     line : str
         '' where points are not joined.
+    palette : dict, optional
+        {word of `colour`: colour}.
 
     Returns
     -------
@@ -63,7 +77,8 @@ def curves(
             head = tuple(own for own, named in ((word, panel), (name, colour)) if named)
             own = {key[-1]: point for key, point in found.items() if key[:-1] == head}
             if own:
-                points(place, list(own), list(own.values()), COLOURS[k % 7], name or None, MARKERS[k % 7], line)
+                shade = palette[name] if palette else COLOURS[k % 7]
+                points(place, list(own), list(own.values()), shade, name or None, MARKERS[k % 7], line)
         _dress(place, word, log, paper, level)
         place.set_xlabel(x_label or x)
     for place in flat[len(shown) :]:

@@ -4,13 +4,12 @@ import pandas
 import pytest
 from made_compressions import made_compression
 
-from analysis import exact_interval
 from analysis.__main__ import main
-from analysis.report.plot import CannotPlot, plot
 from analysis.report.rows import table
+from analysis.studies.plot import CannotPlot, plot
 
 ENDS = {
-    1.0: ("sticking", "sticking", "bouncing", "undecided: still moving"),
+    1.0: ("sticking", "sticking", "bouncing", "undecided"),
     3.0: ("fragmentation",) * 3 + ("sticking",),
 }
 
@@ -35,16 +34,15 @@ def drawn(figure):
     return list(zip(*axes.lines[0].get_data())), [tuple(bar[:, 1]) for bar in bars], text
 
 
-def test_undecided_runs_count_either_way_in_the_bars_and_not_in_the_points(runs):
+def test_undecided_runs_and_those_that_never_met_are_left_out_of_fractions_and_counted(runs):
     points, bars, text = drawn(plot("sticking", runs))
-    assert points == [(1.0, pytest.approx(2 / 3, rel=1e-12)), (3.0, 0.25)]
-    assert bars[0] == pytest.approx((exact_interval(2, 4)[0], exact_interval(3, 4)[1]), rel=1e-12)
-    assert bars[1] == pytest.approx(exact_interval(1, 4), rel=1e-12)
-    assert "8 runs, 1 undecided or not ended" in text and "3 to 4 pairs" in text and "[m/s]" in text
+    assert points == [(1.0, pytest.approx(3 / 5)), (3.0, pytest.approx(2 / 6))]
+    assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx((0.6 * 0.4 / 3) ** 0.5)
+    assert "7 runs of 4 pairs, 1 left out" in text and "[m/s]" in text
     missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)
     missed.attrs = runs.attrs
     *same, text = drawn(plot("sticking", missed))
-    assert same == [points, bars] and "8 runs, 1 left out" in text
+    assert same == [points, bars] and "7 runs of 4 pairs, 2 left out" in text
 
 
 def test_a_mean_has_the_standard_error_of_its_pairs_which_files_tell_apart_too(runs):
@@ -60,12 +58,11 @@ def test_runs_that_cannot_be_drawn_are_left_out_and_counted(runs):
     cells = {"run": "", "kind": "compression", "ended": True, "seed": [1, 2], "finalFilling": [0.3, 0.4], "time": 1.0}
     both = pandas.concat([runs.assign(time=2.0), pandas.DataFrame(cells)], ignore_index=True)
     both.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "finalFilling"]}
-    *same, text = drawn(plot("sticking", both))
-    assert same == list(drawn(plot("sticking", runs))[:2]) and "8 runs, 2 left out" in text
+    assert drawn(plot("sticking", both))[:2] == drawn(plot("sticking", runs))[:2]
     assert drawn(plot("time", both, x="finalFilling"))[0] == [(0.3, 1.0), (0.4, 1.0)]
     ends = runs.assign(d_max=[9.0, *[1.0] * 7], maximum_inside=[False, *[True] * 7])
     points, _, text = drawn(plot("d_max", ends))
-    assert [y for _, y in points] == [1.0, 1.0] and "7 runs, 1 left out" in text
+    assert [y for _, y in points] == [1.0, 1.0] and "7 runs of 4 pairs, 1 left out" in text
 
 
 def test_energies_of_compressions_are_parts_of_the_work_of_the_boundaries(tmp_path):

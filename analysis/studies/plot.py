@@ -1,0 +1,164 @@
+"""A column of a table of runs against another, with error bars over pairs of aggregates."""
+
+import textwrap
+
+import pandas
+
+from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
+from ..printable import suggested
+from ..report.rows import at_end, differing, parameters, table, varied
+from ..runs.format import CHANNELS, COLOURS, COMPRESSION
+from ..runs.table import FOLDER
+from .estimates import ending, estimate, mean
+from .figures import curves
+
+LARGEST = "largest_fraction"
+WHATS = {"sticking": ["outcome"], "largest": [LARGEST], "energy": [at_end(channel) for channel in CHANNELS]}
+FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggregates
+OF_MAXIMUM = {"d_max", "t_max"}
+LETTERS = 13  # of a title, an inch of the figure
+
+
+class CannotPlot(ValueError):
+    """These runs cannot be drawn so; the message is one line."""
+
+
+def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
+    """Figure of many runs: a quantity against one of their columns, with standard errors over pairs of aggregates.
+
+    Pairs are told apart by their seed and files; open points are single pairs. A fraction of n runs is (k + 1)/(n +
+    2), with the binomial error. Left out are runs without a value, with a d_max that is only a bound, and of
+    fractions those that never met, are undecided or have not ended; the title counts them.
+
+    Parameters
+    ----------
+    what : str
+        "sticking" (fraction of the decided runs that stick), "largest" (mass fraction of the largest piece), "energy"
+        (change of every channel over K(0), of compressions over the boundaries' work; kinetic: what is left), or a
+        column.
+    runs : pandas.DataFrame, path, pattern, RunFolder or list of these
+        A table(), or what that takes.
+    x : str
+        Column of numbers.
+    by : str
+        Column that distinguishes curves (of "energy" panels).
+    where : dict, optional
+        {column: value} of the runs that are drawn.
+    logarithmic : str, optional
+        Axes: "x", "y", "xy" or "". By default x if it spans a decade.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    CannotPlot
+        A ValueError, also if runs differ in parameters beside x, by, the seed and the files.
+    """
+    found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
+    attributes = found.attrs
+    found = found.reset_index(drop=True)  # of tables put together
+    found.attrs = attributes
+    if logarithmic not in (None, "x", "y", "xy", ""):
+        raise CannotPlot(f"logarithmic = {logarithmic}: must be x, y, xy or ''")
+    seed = "seed" if "seed" in found else FOLDER
+    _require_columns(found, what, x, by, where or {}, seed)
+    for name, value in (where or {}).items():
+        found = _only(found, name, value)
+    number, found = len(found), _complete(found, what, x, by)
+    _require_drawable(found, what, x, by, seed)
+    files = [name for name in FILES if name in found and found[name].notna().any()]
+    found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
+    for name in filter(None, (x, by)):
+        found[name] = found[name].map(_rounded)
+    if logarithmic is None:
+        logarithmic = "x" if found[x].min() > 0 and found[x].max() >= 10 * found[x].min() else ""
+    figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
+    if figure is None:
+        raise CannotPlot(f"{what}: no run has a value")
+    title = f"{len(found)} runs of {found.pair.nunique()} pairs" + f", {number - len(found)} left out" * (
+        len(found) < number
+    )
+    figure.suptitle("\n".join(textwrap.wrap(title, int(LETTERS * figure.get_figwidth()))), fontsize=10)
+    return figure
+
+
+def _draw(found, what, x, by, logarithmic):
+    """The Figure; None if no run has a value."""
+    units = found.attrs.get("units", {})
+    with_unit = lambda name: name + (f"  [{units[name]}]" if units.get(name, "") not in ("", "1") else "")
+    how = {"log": logarithmic, "line": "-" if x in parameters(found) else "", "x_label": with_unit(x)}
+    words = [f"{by} {value:g}" if isinstance(value, float) else f"{by} {value}" for value in found[by]] if by else ""
+    if what == "energy":
+        of_work = (found["kind"] == COMPRESSION.name).all()
+        changing = [c for c in CHANNELS if c == "kinetic" or found[at_end(c)].any()]
+        parts = [found.assign(value=100 * found[at_end(c)], channel=c, words=words) for c in changing]
+        how |= {"panel": "words" if by else "", "colour": "channel", "palette": COLOURS}
+        label = "change, of the boundaries' work  [%]" if of_work else "change (kinetic: end), of K(0)  [%]"
+        return curves(pandas.concat(parts), lambda own: estimate(mean("value"), own), x, y_label=label, **how)
+    found, how["colour"] = found.assign(words=words), "words" if by else ""
+    if what == "sticking":
+        of, label = lambda own: ending(own, STICKING), "fraction of runs that stick"
+    else:
+        column = WHATS.get(what, [what])[0]
+        of, label = lambda own: estimate(mean(column), own), with_unit(column)
+    limits = (-0.03, 1.03) if what in WHATS else None
+    return curves(found, of, x, limits=limits, y_label=label, **how)
+
+
+def _require_columns(found, what, x, by, where, seed):
+    if by == x:
+        raise CannotPlot(f"by = {by}: must be another column than x")
+    for name in (what, x, *([by] if by else []), *where):
+        if name not in found and not (name == what and what in WHATS):
+            names = (*WHATS, *found) if name == what else found
+            raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
+    own = [seed, "outcome", "ended", "kind"] + ["maximum_inside"] * bool(OF_MAXIMUM & {what, x, by})
+    missing = [name for name in dict.fromkeys((*WHATS.get(what, ()), *own)) if name not in found]
+    if missing:
+        raise CannotPlot(f"table of runs: lacks {', '.join(missing)}; must be as analysis.table() gives it")
+
+
+def _only(found, name, value):
+    """The runs with a value in a column."""
+    column = found[name]
+    if column.dtype.kind in "fiu":
+        if isinstance(value, str):
+            raise CannotPlot(f"where {name} = {value}: must be a number")
+        same = column.map(_rounded) == _rounded(float(value))
+    else:
+        same = column == value
+    if not same.any():
+        raise CannotPlot(
+            f"where {name} = {value}: no run is left; must be one of {', '.join(map(str, column.unique()))}"
+        )
+    return found[same]
+
+
+def _complete(found, what, x, by):
+    """The runs that have all that is drawn."""
+    kept = found[[x, *([by] if by else []), *WHATS.get(what, [what])]].notna().all(axis=1)
+    if OF_MAXIMUM & {what, x, by}:
+        kept &= found.maximum_inside.eq(True)
+    if what == "sticking":
+        kept &= found.ended.astype(bool) & ~found.outcome.isin((NEVER_MET, UNDECIDED))
+    return found[kept]
+
+
+def _require_drawable(found, what, x, by, seed):
+    if not len(found):
+        raise CannotPlot(f"no run has all of {', '.join(dict.fromkeys(filter(None, (what, x, by))))}")
+    for name in [x, *([] if what in ("sticking", "energy") else WHATS.get(what, [what]))]:
+        if found[name].dtype.kind not in "fiub":
+            raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+    if found["kind"].nunique() > 1:
+        raise CannotPlot(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
+    others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
+    if others and x in parameters(found):
+        raise CannotPlot(differing(found, others, "choose by or where"))
+
+
+def _rounded(value):
+    """Numbers that differ by rounding alone are one value of x."""
+    return float(f"{value:.9g}") if isinstance(value, float) else value
