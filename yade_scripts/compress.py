@@ -25,8 +25,7 @@ sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))
 from analysis.libraries import require_libraries
 from analysis.signals import end_quietly
 
-if __name__ == "__main__":  # not where a sweep reads which kind of run this is
-    end_quietly(signal.SIGINT)
+end_quietly(signal.SIGINT)
 require_libraries()
 from yade_scripts.experiments.compression import KIND
 from yade_scripts.run import script

@@ -34,7 +34,7 @@ from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.packings.packing import description
 from yade_scripts.parameters import ParameterError, one_of, parameter, unknown
 from yade_scripts.parameters.errors import one_line_errors
-from yade_scripts.run.arguments import from_arguments
+from yade_scripts.run.parameters import from_arguments
 
 WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
 

@@ -39,14 +39,13 @@ require_libraries()
 from analysis.printable import meant, printable
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
+from yade_scripts.run.loop import StopSignals
 from yade_scripts.run.parameters import CORES
-from yade_scripts.run.stop_signals import StopSignals
 from yade_scripts.run.table import TableError
-from yade_scripts.runner import slurm, view
+from yade_scripts.runner import slurm
 from yade_scripts.runner.batch import LOGS, Batch, StudyBusy
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
-from yade_scripts.runner.screen import Screen
-from yade_scripts.runner.study import Study
+from yade_scripts.runner.study import Screen, Study, full_table, live_table
 from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
@@ -146,7 +145,7 @@ def run(study, stop):
             _run_batch(study, left, screen, stop)
             changed = None
         elif elsewhere:
-            screen.draw_if_due(lambda: study.text(view.live_table, elsewhere))
+            screen.draw_if_due(lambda: study.text(live_table, elsewhere))
             _wait(stop)
             changed = elsewhere
         else:
@@ -159,7 +158,7 @@ def _run_batch(study, left, screen, stop):
         changed = set()
         while (at_work := {row.name for row in batch.running()}) and not stop.received:
             changed |= at_work
-            if screen.draw_if_due(lambda: study.text(view.live_table, changed)):
+            if screen.draw_if_due(lambda: study.text(live_table, changed)):
                 changed = at_work
             batch.wait(HEAR_SIGNALS)
         if stop.received:
@@ -205,10 +204,10 @@ def main(arguments):
         place, table = place_of(table), os.path.abspath(table)
         os.chdir(place)
     try:
-        study = Study(table, options.jobs or CORES, run_scripts=not options.status)
+        study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
-            print(study.drawn(view.full_table, states) + study.undecided(states))
+            print(study.drawn(full_table, states) + study.undecided(states))
             return 0
         if not options.dry_run:
             study.folder.lock()

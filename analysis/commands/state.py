@@ -75,7 +75,7 @@ def verify(options):
     from ..progress import line_beside_bars, progress
     from ..runs.collect import LOST, is_lost, run_folders
     from ..runs.files import begins_with_sum
-    from ..runs.verify import verify_run, verify_text
+    from ..runs.status import verify_run, verify_text
 
     texts = [
         Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()

@@ -129,8 +129,8 @@ def _text(kind, study, found, rows):
 
 def _write(options, study, found, runs, rows):
     """Write tables, figures and page, as far as they are wanted; what to open first."""
+    from ..runs.collect import provenance_lines
     from ..runs.files import write_file
-    from ..runs.provenance import provenance_lines
     from ..studies.comparison import of_table
     from ..studies.gathering import TABLE_FILE
     from ..studies.pages import START, filled, html_page

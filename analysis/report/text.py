@@ -6,8 +6,8 @@ from ..measures.ledger import largest_work
 from ..measures.of_run import are_equal, met
 from ..measures.outcome import BOUNCING
 from ..measures.periodic_cell import AVERAGED, pressure_at_end
+from ..runs.folder import WIDTH, settings
 from ..runs.format import CHANNELS, COLLISION, COMPRESSION, LABELS
-from ..runs.shown import WIDTH, settings
 from ..runs.table import FOLDER, RUN
 from .rows import varied
 

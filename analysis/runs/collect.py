@@ -1,13 +1,14 @@
-"""From the paths of a command line to run folders, tables of runs, and what is wrong with the others."""
+"""From the paths of a command line to run folders and tables of runs, and where the runs come from."""
 
 import os
+from collections import Counter
 from dataclasses import dataclass
 from glob import glob, has_magic
 from pathlib import Path
 
 from .files import RunFolderError
 from .folder import open_run
-from .format import COLLISION, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from .format import COLLISION, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER, same
 from .table import ENDING
 
 MARKS = RUN_FILE, ENDED_FILE  # of a run folder
@@ -17,9 +18,21 @@ LEVELS = 2
 
 @dataclass(frozen=True)
 class Scene:
-    """Which runs belong together: its name (as in "A24's scene"), the parameters that every run has (`values`), those
-    that must be numbers (`numbers`), what else a study measures that tells runs apart (`measured`: names of its columns;
-    two runs with the same numbers of both are the same run) and the kind of run."""
+    """Which runs belong together.
+
+    Parameters
+    ----------
+    name : str
+        As in "A24's scene".
+    values : dict
+        Parameters that every run has.
+    numbers : tuple of str
+        Parameters that must be numbers.
+    kind : str
+        The kind of run.
+    measured : tuple of str
+        What else a study measures (columns) that tells runs apart.
+    """
 
     name: str
     values: dict
@@ -29,7 +42,7 @@ class Scene:
 
     @property
     def key(self):
-        """Columns whose numbers two runs must not share."""
+        """Columns whose values two runs must not share: these are the same run."""
         return self.numbers + self.measured
 
     def why_not(self, run):
@@ -41,15 +54,26 @@ class Scene:
             if isinstance(value, bool) or not isinstance(value, (int, float)):
                 return f"its parameter {name} is {value!r}, not a number"
         for name, wanted in self.values.items():
-            if run.parameters.get(name, wanted) != wanted:
+            if not same(run.parameters.get(name, wanted), wanted):
                 return f"{name} = {run.parameters[name]}, {self.name} has {wanted}"
         return None
 
 
 @dataclass(frozen=True)
 class Collection:
-    """runs (RunFolder, ended, of the scene), tables (Path of each file with runs of an earlier analysis), notes (str, one
-    a run left out for a good reason) and problems (str, one a path or run that could not be read)."""
+    """What collect() found.
+
+    Parameters
+    ----------
+    runs : tuple of RunFolder
+        Ended, of the scene.
+    tables : tuple of Path
+        Files with runs of an earlier analysis.
+    notes : tuple of str
+        One a run left out for a good reason.
+    problems : tuple of str
+        One a path or run that could not be read.
+    """
 
     runs: tuple
     tables: tuple
@@ -59,43 +83,36 @@ class Collection:
 
 def collect(paths, scene):
     """Collection of the run folders at the paths, or in folders at most LEVELS below them, and of tables (.csv)."""
-    runs, tables, notes, problems = [], [], [], []
-    for path, error in _folders(paths):
-        if error:
-            problems.append(error)
-        elif path.suffix == ENDING and path.is_file():
-            tables.append(path)
-        elif not (path / ENDED_FILE).is_file():
-            # A run that is under way has perhaps no history yet: it is no broken one.
+    is_table = lambda path: path.suffix == ENDING and path.is_file()
+    tables = [path for path in map(Path, paths) if is_table(path)]
+    folders = run_folders([path for path in paths if not is_table(Path(path))])
+    runs, notes, problems = [], [], [problem for _, problem in folders if problem]
+    for path in (path for path, problem in folders if not problem):
+        if not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
             notes.append(f"{path}: has not ended, left out")
+            continue
+        try:
+            run = open_run(path)
+        except RunFolderError as failure:
+            problems.append(str(failure))
+            continue
+        reason = scene.why_not(run)
+        if reason:
+            notes.append(f"{path}: {reason}, left out")
         else:
-            try:
-                run = open_run(path)
-            except RunFolderError as failure:
-                problems.append(str(failure))
-                continue
-            reason = scene.why_not(run)
-            if reason:
-                notes.append(f"{path}: {reason}, left out")
-            else:
-                runs.append(run)
+            runs.append(run)
     return Collection(tuple(runs), tuple(tables), tuple(notes), tuple(problems))
 
 
-def _folders(paths):
-    """(run folder or table, None) or (None, what is wrong) for every path."""
-    for path in map(Path, paths):
-        if path.suffix == ENDING and path.is_file():
-            yield path, None
-        else:
-            yield from run_folders([path])
-
-
 def run_folders(paths):
-    """[(Path of a run folder, None) or (None, what is wrong)] of every path: the path itself, or folders at most LEVELS below
-    it; of a pattern ("runs/**") the same of all folders that it matches. Each folder comes once. Of several paths (runs/*) some
-    may hold no runs (runs/logs)."""
-    found, seen, empty = [], set(), []
+    """Run folders at paths, in folders at most LEVELS below them, or of a pattern ("runs/**") in those that it matches.
+
+    Returns
+    -------
+    list
+        (Path, None), each folder once, or (None, what is wrong). Of several paths (runs/*) some may hold no runs.
+    """
+    found, known, empty = [], set(), []
     for path in paths:
         pattern = has_magic(str(path)) and not os.path.exists(path)
         places = filter(Path.is_dir, map(Path, glob(str(path), recursive=True))) if pattern else [Path(path)]
@@ -104,11 +121,14 @@ def run_folders(paths):
         except PermissionError as error:
             found.append((None, f"{error.filename}: {error.strerror}"))
             continue
-        new = [folder for folder in dict.fromkeys(folders) if folder.resolve() not in seen]
-        seen.update(folder.resolve() for folder in folders)
-        found += [(folder, None) for folder in new]
-        if not folders and os.path.exists(path):
-            empty.append((None, f"{path}: {_nothing(Path(path))}"))
+        for folder in folders:
+            if folder.resolve() not in known:
+                known.add(folder.resolve())
+                found.append((folder, None))
+        if not folders and os.path.isdir(path):
+            empty.append((None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"))
+        elif not folders and os.path.exists(path):
+            empty.append((None, f"{path}: is not a folder"))
         elif not folders:
             found.append((None, f"{path}: " + ("no run folder matches" if pattern else "no such folder")))
     return found or empty
@@ -131,7 +151,50 @@ def is_lost(path):
     return any((path / left).exists() for left in (HISTORY_FILE, STATES_FOLDER)) and not _is_marked(path)
 
 
-def _nothing(path):
-    if not path.is_dir():
-        return "is not a folder"
-    return f"no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"
+# Where runs come from.
+
+_COUNTED = {"commits": "commit", "machines": "machine", "versions": "versions", "stepFractions": "step [t0]"}
+
+
+def provenance(runs):
+    """What made the runs (RunFolder).
+
+    Returns
+    -------
+    dict
+        runs (their number), commits, machines, versions, stepFractions [t0] (each {text: number of runs}), steps (their
+        sum, as if there were no shorter ones) and hours (of wall time).
+    """
+    found = {"runs": len(runs), **{key: Counter() for key in _COUNTED}, "steps": 0, "hours": 0.0}
+    for run in runs:
+        record, hardware = run.record, run.record.get("hardware") or {}
+        commit, *changed = str(record.get("commit", "unknown")).split("-", 1)  # -changed where its files were others
+        found["commits"]["-".join([commit[:12], *changed])] += 1
+        found["machines"][f"{hardware.get('cpu') or 'unknown processor'}, {hardware.get('cores', '?')} cores"] += 1
+        found["versions"][", ".join(f"{name} {text}" for name, text in (record.get("versions") or {}).items())] += 1
+        step, shorter = str(run.parameters.get("stepFraction", "unknown")), run.parameters.get("impactStepFraction")
+        found["stepFractions"][step if shorter is None else f"{step} (impact: {shorter})"] += 1
+        found["steps"] += int(run.derived.get("steps") or 0)
+        found["hours"] += float(record.get("wallTime") or 0.0) / 3600.0
+    return _most_first(found)
+
+
+def joined(origins):
+    """The same of all the runs of several such dicts."""
+    origins = list(origins)
+    counts = {key: sum((Counter(o[key]) for o in origins), Counter()) for key in _COUNTED}
+    return _most_first({**{key: sum(o[key] for o in origins) for key in ("runs", "steps", "hours")}, **counts})
+
+
+def _most_first(found):
+    counts = {key: dict(found[key].most_common()) for key in _COUNTED}
+    return {"runs": found["runs"], **counts, "steps": found["steps"], "hours": round(found["hours"], 2)}
+
+
+def provenance_lines(origin):
+    """The same as lines of text."""
+    made = sum(origin["commits"].values())
+    more = "" if made == origin["runs"] else f" (with those that others replaced {made}, to which the following belongs)"
+    yield f"{origin['runs']} runs{more}, {origin['steps']} steps, {origin['hours']:g} h of run time"
+    for key, text in _COUNTED.items():
+        yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())

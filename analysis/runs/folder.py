@@ -4,10 +4,12 @@ Folders of every format in READABLE are read; what an older one lacks is filled 
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
 import re
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
-from typing import Mapping
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from .format import (
     COLLISION,
     ENDED_FILE,
     HISTORY_FILE,
+    PARAMETER_UNITS,
     POSITIVE_CONSTANTS,
     READABLE,
     RUN_FILE,
@@ -27,26 +30,31 @@ from .format import (
     RunKind,
 )
 
-_STATE_NAME = re.compile(r"\d{6}\.npz")
 LARGEST = 1e100  # of a value in SI units: squares and sums of what a run can hold are finite
+WIDTH = 100  # characters of a line that a prompt shows
+# The parameters that a prompt shows, as far as a run has them.
+SHOWN = (
+    *("packing", "filling", "radius", "grains", "projectileGrains", "velocity", "impact"),
+    *("material", "grainRadius", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
+)
+_STATE_NAME = re.compile(r"\d{6}\.npz")
 # numpy's letters of the types that may stand for a quantity's kind, and what to call them.
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true or false")}
 
 
-class State:
-    """The grains at one time: an attribute for each quantity of runs.format.STATE, and of the kind of run; `time` is a
-    float [s], an optional one that the run does not have is None.
+class State(SimpleNamespace):
+    """The grains at one time: an attribute for each quantity of runs.format.STATE, and of the kind of run.
 
-    fragments() has a row for each piece."""
+    `time` is a float [s]; an optional quantity that the run does not have is None. The arrays are read-only."""
 
     def __init__(self, time, **arrays):
         optional = {quantity.name: None for quantity in STATE if quantity.optional}
-        self.__dict__.update({**optional, "time": float(np.reshape(time, ())), **arrays})
+        super().__init__(**{**optional, "time": float(np.reshape(time, ())), **arrays})
 
     def __repr__(self):
-        from .shown import state_text
-
-        return state_text(self)
+        names = ", ".join(name for name, value in vars(self).items() if value is not None)
+        head = f"state at {1e9 * self.time:.4g} ns: {len(self.radius)} grains, {len(self.contact_pairs)} contacts\n"
+        return head + textwrap.fill(names, WIDTH, initial_indent="  ", subsequent_indent="  ")
 
     def fragments(self):
         """DataFrame with a row for each piece (grains joined by contacts), the largest first: measures.fragments.fragments."""
@@ -56,8 +64,9 @@ class State:
 
 
 class StateSequence(Sequence):
-    """The states of a run, oldest first, each read from its file when it is asked for (RunFolderError if it is
-    damaged). sums: as read_ended() gives them."""
+    """The states of a run, oldest first, each read from its file when it is looked up (RunFolderError if it is damaged).
+
+    files: their paths; sums: as read_ended() gives them."""
 
     def __init__(self, files, kind=COLLISION, file_format=READABLE[-1], sums=None):
         self.files, self.kind, self.file_format, self.sums = tuple(files), kind, file_format, sums
@@ -94,7 +103,7 @@ class StateSequence(Sequence):
         file = self.files[index]
         arrays = read_arrays(file, names, sha256=self._sum(file))
         for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
-            require_values(file, quantity, arrays[quantity.name])
+            _require_values(file, quantity, arrays[quantity.name])
         return arrays
 
     def _sum(self, file):
@@ -103,28 +112,50 @@ class StateSequence(Sequence):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RunFolder:
-    """One run: path, kind (runs.format.RunKind), parameters (as in the run's table), derived (constants, SI), record
-    (all of run.json), history (arrays (T,) by name, as listed in kind.history), states, ended (came to its planned
-    end)."""
+    """One run.
+
+    Parameters
+    ----------
+    path : Path
+    kind : runs.format.RunKind
+    parameters : dict
+        As in the run's table.
+    derived : dict
+        Constants, in SI units.
+    record : dict
+        All of run.json.
+    history : dict
+        {name: read-only array (T,)}, as listed in kind.history.
+    states : StateSequence
+    ended : bool
+        Whether it came to its planned end.
+    """
 
     path: Path
     kind: RunKind
-    parameters: Mapping
-    derived: Mapping
-    record: Mapping
-    history: Mapping
+    parameters: dict
+    derived: dict
+    record: dict
+    history: dict
     states: StateSequence
     ended: bool
 
     def __repr__(self):
-        from .shown import run_text
-
-        return run_text(self)
+        lines = (f"{name}: {text}" for name, text in self._facts())
+        folded = (textwrap.fill(line, WIDTH, initial_indent="  ", subsequent_indent="    ") for line in lines)
+        return "\n".join([f"run {self.path}", *folded])
 
     def _repr_html_(self):
-        from .shown import run_html
+        rows = (f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in self._facts())
+        return f"<table><caption>run {escape(str(self.path))}</caption>{''.join(rows)}</table>"
 
-        return run_html(self)
+    def _facts(self):
+        """(name, text) of what a prompt shows."""
+        time = self.history["time"]
+        yield "kind", f"{self.kind.name}, {'ended' if self.ended else 'NOT ENDED'} at {1e9 * time[-1]:.4g} ns"
+        yield "parameters", settings(self.parameters)
+        yield "history", f"{len(time)} samples of " + ", ".join(self.history)
+        yield "states", f"{len(self.states)}; first and last: .start, .last"
 
     @property
     def settled(self):
@@ -138,7 +169,7 @@ class RunFolder:
 
     @property
     def last(self):
-        """The last state, which is the end of a run that ended; RunFolderError when there is none."""
+        """The last state: the end of a run that ended, how far it came otherwise; RunFolderError when there is none."""
         return self._state(-1)
 
     def _state(self, index):
@@ -147,10 +178,32 @@ class RunFolder:
         return self.states[index]
 
 
-def open_run(path):
-    """RunFolder at `path`; RunFolderError when it is no run folder, has no history yet, or is damaged.
+def settings(parameters):
+    """'packing cpe, velocity 10 m/s, ...': the parameters SHOWN of a run's."""
+    given = ((name, parameters.get(name)) for name in SHOWN)
+    return ", ".join(_setting(name, value) for name, value in given if value not in (None, ""))
 
-    A run that has not ended can be read as far as it came (`ended` is False then).
+
+def _setting(name, value):
+    text, unit = f"{value:.6g}" if isinstance(value, float) else str(value), PARAMETER_UNITS.get(name, "")
+    return f"{name} {text}" + (f" {unit}" if unit not in ("", "1") else "")
+
+
+def open_run(path):
+    """Read a run folder; a run that has not ended is read as far as it came.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Returns
+    -------
+    RunFolder
+
+    Raises
+    ------
+    RunFolderError
+        when it is no run folder, has no history yet, or is damaged
     """
     path = Path(path)
     if not path.is_dir():
@@ -278,7 +331,7 @@ def read_quantities(file, quantities, file_format, sha256=None):
     for quantity in expected:
         if quantity.name in arrays:
             _require_shape(file, quantity, arrays[quantity.name], sizes)
-            require_values(file, quantity, arrays[quantity.name])
+            _require_values(file, quantity, arrays[quantity.name])
     for quantity in quantities:
         if quantity.since > file_format and not quantity.optional:
             arrays[quantity.name] = np.zeros([sizes.get(n, n) for n in quantity.shape])
@@ -297,7 +350,7 @@ def _require_shape(file, quantity, array, sizes):
         raise RunFolderError(f"{file}: '{name}' must be {words}, it is {array.dtype}")
 
 
-def require_values(file, quantity, array):
+def _require_values(file, quantity, array):
     """Raise RunFolderError unless the values of a quantity's array are what they may be."""
     name, sound = quantity.name, np.abs(array) < LARGEST
     if quantity.gaps:

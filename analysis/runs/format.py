@@ -3,24 +3,23 @@
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
     run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached,
-                        what ended a compression (endedBy);
-                        files: names of what the run writes into the folder, by which scripts know it as a run's
+                        what ended a compression (endedBy)
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts; P planes, K contacts with these
     ended               the run came to its planned end; the SHA-256 of each of the files above, as sha256sum has them
     checkpoint/         while the run is under way, or was stopped: not part of the format
-    heartbeat.json      while the run is under way, with .heartbeat-N: on which machine (running.py); not part of the format
+    lock                while the run is under way: on which machine (lock.py); not part of the format
 
 `ended` is written last, when all the rest is on the disk, so that there is none without sums. It is what sha256sum prints, and
 `sha256sum -c ended` checks it. Files that others put into the folder are not in it.
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
-`ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends. Versions before 0.5.0 wrote no `files`:
-their runs are read, but neither resumed nor replaced.
+`ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends.
 """
 
 from dataclasses import dataclass
+from math import isclose
 
 FORMAT = 5
 READABLE = (1, 2, 3, 4, 5)
@@ -28,7 +27,7 @@ SEALED = 4  # the first that has sums
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
 STATES_FOLDER, CHECKPOINT_FOLDER = "states", "checkpoint"
-HEARTBEAT_FILE = "heartbeat.json"
+LOCK_FILE = "lock"
 
 
 def state_file(number):
@@ -38,9 +37,10 @@ def state_file(number):
 
 @dataclass(frozen=True)
 class Channel:
-    """An energy channel [J]. kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start
-    against what holds or moves the grains). The sum of all channels is constant in time. colour: in figures. since: the
-    first format that has it; in older folders it is zero."""
+    """An energy channel [J]; the sum of all is constant in time.
+
+    kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start against what holds or moves the
+    grains). colour: in figures. since: the first format that has it; in older folders it is zero."""
 
     name: str
     kind: str
@@ -78,10 +78,11 @@ COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 
 @dataclass(frozen=True)
 class Quantity:
-    """An array of a history or a state. shape: of "T", "N", "M", "P", "K" (samples, grains, contacts, planes, contacts with these) and numbers; kind: numpy's
-    letter of the type, "f", "i" or "b". `optional`: left out where the scene has none. `gaps`: may be NaN in places.
-    `positive`: all values are > 0.
-    `since`: the first format that has it; zeros stand for it in older folders."""
+    """An array of a history or a state.
+
+    shape: of "T", "N", "M", "P", "K" (samples, grains, contacts, planes, contacts with these) and numbers; kind: numpy's letter
+    of the type, "f", "i" or "b"; optional: left out where the scene has none; gaps: may be NaN in places; positive: all values
+    are > 0; since: the first format that has it, zeros stand for it in older folders."""
 
     name: str
     shape: tuple
@@ -122,7 +123,9 @@ CONTACTS = Quantity("contacts", ("T",), "", "number of contacts", "i")
 
 # Sintered bonds that have broken since the start, by mode: names in the history, and their order in a state.
 BROKEN_BONDS = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
-BONDS = tuple(Quantity(name, ("T",), "", "sintered bonds broken since the start", "i", optional=True) for name in BROKEN_BONDS)
+BONDS = tuple(
+    Quantity(name, ("T",), "", "sintered bonds broken since the start", "i", optional=True) for name in BROKEN_BONDS
+)
 
 STATE = (
     Quantity("time", (), "s", "time"),
@@ -212,3 +215,20 @@ PARAMETER_UNITS = {
     "finalPressure": "Pa",
     "stretchFilling": "1",
 }
+
+SAME = 1e-9  # relative: two numbers that agree so far are one value of a parameter
+
+
+def same(one, other):
+    """Whether two values of a parameter are the same: numbers that agree to SAME, and anything else that is equal."""
+    numbers = isinstance(one, (int, float)) and isinstance(other, (int, float))
+    return one == other or (numbers and isclose(one, other, rel_tol=SAME))
+
+
+def value_text(value):
+    """A value of a parameter with the digits that tell it from others, for names of folders and for groups.
+
+    >>> value_text(10**0.5), value_text(3.0), value_text("ice")
+    ('3.16227766', '3', 'ice')
+    """
+    return f"{value:.10g}" if isinstance(value, float) else str(value)

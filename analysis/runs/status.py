@@ -1,80 +1,85 @@
-"""What has become of a run, from its folder alone: of any machine.
-
-running.py tells whether it is under way. A run of a version before 0.4.0 has no heartbeat: on another machine it is taken
-for running as long as it writes its history, every ten seconds or so; the clocks must agree to a minute then."""
+"""What has become of a run, and whether its files are as the run has left them, from its folder alone: of any machine."""
 
 import os
 import time
 from dataclasses import dataclass
+from pathlib import Path
 
-from .files import RunFolderError, read_arrays
-from .folder import read_record
-from .format import CHECKPOINT_FOLDER, ENDED_FILE, HEARTBEAT_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
-from .running import place
+from .files import RunFolderError, begins_with_sum, is_unfinished, read_arrays, read_bytes, read_summed
+from .folder import read_ended, read_record, state_files
+from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, LOCK_FILE, RUN_FILE
+from .lock import under_way
 
 DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 KINDS = (DONE, RUNNING, WAITING, FAILED)
-SILENCE = 180.0  # s without a write after which a run without a heartbeat is taken for stopped
-EARLY = 0.02  # progress below which a pace tells nothing
+EARLY = 0.02  # progress below which a pace says nothing
 FAILURE = "failed"  # how the outcome of a failed run begins, in run.json
+NAMED = 3  # files that a line of verify_run() names
+NO_SUMS = "has no sums (of a version before 0.5.0): damage that leaves it readable is not noticed"
 
 
 @dataclass(frozen=True)
 class State:
-    """kind: DONE, ...; progress: 0 to 1; seconds: wall time spent; left: seconds by the run's own pace, if known; host: the
-    machine on which it is running, if known."""
+    """What has become of a run.
+
+    Parameters
+    ----------
+    kind : str
+        DONE, RUNNING, WAITING (it was stopped, killed or has not begun) or FAILED.
+    progress : float
+        0 to 1.
+    seconds : float or None
+        Wall time spent.
+    left : float or None
+        Wall time left by the run's own pace [s].
+    note : str
+    host : str or None
+        The machine on which it is running.
+    """
 
     kind: str
     progress: float = 0.0
-    seconds: float = None
-    left: float = None
+    seconds: float | None = None
+    left: float | None = None
     note: str = ""
-    host: str = None
+    host: str | None = None
 
 
-def state(folder, now=None):
-    """State of the run in a folder (path); now: seconds since 1970. Running is what running.place() says; without a
-    heartbeat also what wrote within SILENCE seconds and has not said that it stopped. Waiting is what was stopped or killed:
-    time left is then by the pace it had."""
-    now = time.time() if now is None else now
-    where = place(folder)  # first: a run that ends now has its mark before it gives up its heartbeat
+def state(folder):
+    """State of the run in a folder (path)."""
+    lock = under_way(folder)  # first: a run that ends now has its mark before it gives up its lock
     run = run_of(folder)
     outcome = str(run.get("outcome", ""))
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
-        if not run:
-            return State(FAILED, note=f"ended, but {damage(folder)}")
-        return State(DONE, 1.0, _spent(folder, run))
-    if where:
-        return running(folder, run, where, now)
-    progress = progress_of(folder, run)
+        return State(DONE, 1.0, _spent(folder, run)) if run else State(FAILED, note=f"ended, but {damage(folder)}")
+    if lock:
+        return running(folder, run, lock)
+    progress, spent = progress_of(folder, run), _spent(folder, run)
     if outcome.startswith(FAILURE):
-        return State(FAILED, progress, _spent(folder, run), note=outcome)
-    without = not os.path.exists(os.path.join(folder, HEARTBEAT_FILE))
-    if without and now - newest_write(folder) < SILENCE and outcome in ("", "running"):
-        return running(folder, run, None, now)
-    spent = _spent(folder, run)
+        return State(FAILED, progress, spent, note=outcome)
     left = spent * (1 - progress) / progress if progress >= EARLY else None
     how = "stopped" if outcome == "interrupted" else "stopped without a word"
-    return State(WAITING, progress, spent, left, f"{how}, {_resumes(folder)}")
+    checkpoint = os.path.isdir(os.path.join(folder, CHECKPOINT_FOLDER))
+    return State(WAITING, progress, spent, left, f"{how}, {'has a checkpoint' if checkpoint else 'starts again'}")
 
 
-def running(folder, run, where=None, now=None):
-    """State of a run that is under way; where: its running.Place, if known. Its pace is that of the wall time and the
-    progress at the last writing of the history."""
-    now = time.time() if now is None else now
+def running(folder, run, lock):
+    """State of a run that is under way. Its pace is that of the wall time and the progress when the history was last written.
+
+    run: its run.json (dict); lock: its lock.Lock."""
     progress = progress_of(folder, run)
-    known = {} if where is None else {"host": where.host, "note": "" if where.here else str(where)}
+    where = {"host": lock.host, "note": "" if lock.is_here else str(lock)}
     begun, written = (changed(os.path.join(folder, name)) for name in (RUN_FILE, HISTORY_FILE))
     if begun < 0:
-        return State(RUNNING, progress, **known)
-    spent, since = _spent(folder, run), max(0.0, now - max(begun, written))
+        return State(RUNNING, progress, **where)
+    spent, since = _spent(folder, run), max(0.0, time.time() - max(begun, written))
     paced = written > begun and progress >= EARLY
     left = max(0.0, spent * (1 - progress) / progress - since) if paced else None
-    return State(RUNNING, progress, spent + since, left, **known)
+    return State(RUNNING, progress, spent + since, left, **where)
 
 
 def progress_of(folder, run):
-    """How far a run is by its history, 0 to 1; 0 where that cannot be told. run: its run.json."""
+    """How far a run is by its history, 0 to 1; 0 where that cannot be read. run: its run.json."""
     try:
         reached = float(read_arrays(os.path.join(folder, HISTORY_FILE), ("time",))["time"][-1]) / end_time(run)
     except (RunFolderError, KeyError, IndexError, TypeError, ZeroDivisionError):
@@ -98,17 +103,7 @@ def run_of(folder):
 
 def damage(folder):
     """What is wrong with a run folder's run.json, for which run_of() gives {}; one line."""
-    try:
-        read_record(folder)
-    except RunFolderError as error:
-        return str(error)
-    return f"{os.path.join(folder, RUN_FILE)}: not the record of a run"
-
-
-def newest_write(folder):
-    """When something was last written in a run folder [s since 1970]; -1 when it isn't there."""
-    inside = (RUN_FILE, HISTORY_FILE, STATES_FOLDER, CHECKPOINT_FOLDER)
-    return max(changed(os.path.join(folder, name)) for name in inside)
+    return (_wrong(read_record, folder) or [f"{os.path.join(folder, RUN_FILE)}: not the record of a run"])[0]
 
 
 def changed(path):
@@ -120,7 +115,7 @@ def changed(path):
 
 
 def _spent(folder, run):
-    """Wall time [s] until the last writing of the history, that of earlier starts included."""
+    """Wall time [s] until the history was last written, that of earlier starts included."""
     earlier = run.get("wallTime")
     earlier = float(earlier) if isinstance(earlier, (int, float)) else 0.0
     if run.get("outcome") != "running":
@@ -129,6 +124,47 @@ def _spent(folder, run):
     return earlier + max(0.0, written - begun)
 
 
-def _resumes(folder):
-    there = os.path.isdir(os.path.join(folder, CHECKPOINT_FOLDER))
-    return "has a checkpoint" if there else "starts again"
+def verify_run(folder):
+    """([what differs from the sums that the run has left], [what else there is to say]) of a run folder (path), in lines."""
+    folder = Path(folder)
+    try:
+        sums = read_ended(folder)
+    except RunFolderError as error:
+        return [str(error)], []
+    if sums is None:
+        if run_of(folder).get("outcome") == "completed":
+            return [f"{folder / ENDED_FILE}: missing, though the run is completed"], []
+        return [], ["has no sums before it has ended"]
+    if not sums:
+        problems = _wrong(read_record, folder)
+        return problems, [] if problems else [NO_SUMS]
+    checks = [_wrong(read_bytes, folder / name, digits) for name, digits in sorted(sums.items())]
+    problems, others = sum([*checks, _wrong(state_files, folder, sums)], []), _others(folder, sums)
+    said = [] if problems else [f"{len(sums)} files, as the run has left them"]
+    if others:
+        more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
+        said.append(f"also holds {', '.join(others[:NAMED])}{more}, which the run has not written")
+    return problems, said
+
+
+def verify_text(file):
+    """The same of a table that carries its own sum, as a study's runs.csv."""
+    problems = _wrong(read_summed, file)
+    return problems, [] if problems else ["as it was written" if begins_with_sum(file) else NO_SUMS]
+
+
+def _wrong(check, *of):
+    """[what check(*of) finds wrong]."""
+    try:
+        check(*of)
+    except RunFolderError as error:
+        return [str(error)]
+    return []
+
+
+def _others(folder, sums):
+    """Names of the files in a folder that are not the run's, sorted."""
+    found = (path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir())
+    ours = (ENDED_FILE, LOCK_FILE, *sums)
+    theirs = (name for name in found if name not in ours and not name.startswith(f"{CHECKPOINT_FOLDER}/"))
+    return sorted(name for name in theirs if not is_unfinished(Path(name).name))

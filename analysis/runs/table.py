@@ -20,22 +20,34 @@ from .folder import open_run
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
 ENDING = ".csv"
-# Options of pandas.read_csv that give numbers the bits that were written: from 3.1 on it does so by itself, and warns when it is told.
+# With these pandas.read_csv gives numbers the bits that were written: from 3.1 on it does so by itself, and warns of the option.
 EXACTLY = {} if tuple(map(int, pandas.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
 
 
 @dataclass(frozen=True)
 class Column:
-    """What a column holds: name, unit ('' for numbers and words), meaning; kind: numpy's letter of the type ("f", "i",
-    "b", "O" for words); gaps: may have no value in places; absent: its value in tables that lack it (None: they cannot be
-    read)."""
+    """What a column holds.
+
+    Parameters
+    ----------
+    name : str
+    unit : str
+        '' for numbers of things and words.
+    meaning : str
+    kind : str
+        numpy's letter of the type ("f", "i", "b", "O" for words).
+    gaps : bool
+        Whether it may have no value in places.
+    absent : float or None
+        Its value in tables that lack it (None: they cannot be read).
+    """
 
     name: str
     unit: str
     meaning: str
     kind: str = "f"
     gaps: bool = False
-    absent: float = None
+    absent: float | None = None
 
 
 class TableError(Exception):
@@ -65,8 +77,7 @@ def described(table, columns):
 
 
 def run_folder(row):
-    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where the folder
-    is damaged."""
+    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where it is damaged."""
     if not isinstance(row.folder, str):
         raise NoRunFolder(row.run)
     return open_run(row.folder)
@@ -74,9 +85,8 @@ def run_folder(row):
 
 def table_text(table, columns, head):
     """The CSV file (str) of a table, with its sum; head: a dict that JSON can hold."""
-    lines = [json.dumps({**UNSUMMED, **head}, allow_nan=False)]
-    lines += columns_text(columns).splitlines()
     out = io.StringIO()
+    lines = [json.dumps({**UNSUMMED, **head}, allow_nan=False), *columns_text(columns).splitlines()]
     out.writelines(f"# {line}\n" for line in lines)
     names = [RUN, *(column.name for column in columns)]
     table.to_csv(out, columns=names, index=False, quoting=csv.QUOTE_MINIMAL, lineterminator="\n")
@@ -86,27 +96,22 @@ def table_text(table, columns, head):
 def read_table(file, columns):
     """(DataFrame, head) of a CSV file; TableError where it is not one with these columns, or not as it was written."""
     try:
-        text = read_summed(file)
-        lines = text.split("\n")
+        lines = read_summed(file).split("\n")
         comments = list(takewhile(lambda line: line.startswith("# "), lines))
+        body = lines[len(comments) :]
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
         head.pop(SUM, None)
-        body = lines[len(comments) :]
-        _require_once(next(csv.reader(body), []))
-        table = pandas.read_csv(
-            io.StringIO("\n".join(body)),
-            dtype={RUN: str},
-            keep_default_na=False,
-            na_values=[""],
-            **EXACTLY,
-        )
+        names = next(csv.reader(body), [])
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"has the column {name} {names.count(name)} times; must be once")
+        text = io.StringIO("\n".join(body))
+        table = pandas.read_csv(text, dtype={RUN: str}, keep_default_na=False, na_values=[""], **EXACTLY)
     except RunFolderError as error:
         raise TableError(str(error)) from None
-    except RecursionError:
-        raise TableError(f"{file}: not a table of runs: its first line is nested too deeply") from None
-    except ValueError as error:  # pandas's and json's errors are ValueErrors too
+    except (ValueError, RecursionError) as error:  # pandas's and json's errors are ValueErrors too
         raise TableError(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
     lacking = [c.name for c in columns if c.name not in table and c.absent is None]
     if RUN not in table or lacking:
@@ -119,13 +124,6 @@ def read_table(file, columns):
     return table, head
 
 
-def _require_once(names):
-    """Raise ValueError when two columns have one name."""
-    twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
-    if twice:
-        raise ValueError(f"has the column {twice[0]} {names.count(twice[0])} times; must be once")
-
-
 def _check(file, column, values):
     kinds, words = _TYPES[column.kind]
     empty = values.isna()
@@ -133,4 +131,3 @@ def _check(file, column, values):
         raise TableError(f"{file}: '{column.name}' has no value in row {int(empty.argmax()) + 1}")
     if values.dtype.kind not in kinds and not empty.all():
         raise TableError(f"{file}: '{column.name}' must be {words}")
-

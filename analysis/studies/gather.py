@@ -7,9 +7,8 @@ import pandas
 from ..printable import suggested
 from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
-from ..runs.collect import collect
+from ..runs.collect import collect, joined, provenance
 from ..runs.files import RunFolderError
-from ..runs.provenance import joined, provenance
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table
 from .definition import NotMeasured
 

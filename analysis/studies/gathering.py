@@ -8,9 +8,8 @@ import pandas
 from ..printable import suggested
 from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
-from ..runs.collect import collect
+from ..runs.collect import collect, joined, provenance
 from ..runs.files import RunFolderError
-from ..runs.provenance import joined, provenance
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table, table_text
 from .columns import NotMeasured
 
@@ -27,7 +26,7 @@ class Gathered:
     table : DataFrame or None
         A row a run; None where there is none.
     provenance : dict
-        Where they come from (runs.provenance).
+        Where they come from (runs.collect).
     notes : list of str
         One line for each run that is left out.
     problems : list of str

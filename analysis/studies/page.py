@@ -6,7 +6,7 @@ from functools import partial
 import pandas
 
 from ..measures.outcome import UNDECIDED
-from ..runs.provenance import provenance_lines
+from ..runs.collect import provenance_lines
 from .estimate import EXACT
 from .paper import PaperError
 from .tables import claims_table, markdown_table, quantity_table, tests_table

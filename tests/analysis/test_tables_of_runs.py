@@ -28,7 +28,7 @@ def test_files_that_are_no_table_are_one_line(tmp_path, text):
     old, file = "# {" + text[text.index('"study"') :], tmp_path / "runs.csv"
     for before, after, message in (
         ("seed\n", "velocity\n", "has the column velocity 2 times; must be once"),
-        ('"own"', "[" * 100_000, "its first line is nested too deeply"),
+        ('"own"', "[" * 100_000, "not a table of runs"),
     ):
         file.write_text(old.replace(before, after))
         with refused(TableError, message):

@@ -22,7 +22,7 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.imported import imported
 from yade_scripts.parameters import ParameterError
-from yade_scripts.run.arguments import from_arguments
+from yade_scripts.run.parameters import from_arguments
 
 OURS = {
     "cpe": dict(radius=6, filling=0.5),

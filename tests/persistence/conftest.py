@@ -3,12 +3,10 @@
 import os
 import tempfile
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 
 import pytest
-from faults.forks import Forks
-from faults.trial import Trial
+from faults import Forks
 
 
 @pytest.fixture(scope="session")
@@ -17,13 +15,6 @@ def forks():
         found = Forks(folder)
         yield found
         found.close()
-
-
-@pytest.fixture(scope="session")
-def trial_of(forks):
-    """trial_of(command) -> its Trial, made once."""
-    with fast_folder() as folder:
-        yield cache(lambda command: Trial(forks, command, tempfile.mkdtemp(dir=folder)))
 
 
 @contextmanager

@@ -1,118 +1,126 @@
-"""Runs that are killed, or find the disk full, at one of their file-system calls, lose nothing.
+"""A program that is killed, or finds the disk full, leaves whole files, and the same call again comes to the same end.
 
-Here a part of all faults is tried; `make test-faults` tries every one of them (faults/).
-"""
+Tried at one call of each kind (function and kind of file) of each program."""
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
-from faults.commands import COMMANDS, RECORDER, RUN, SCENARIOS, WRITERS, arrays, ended_runs
-from faults.trial import power_loss, wrong_on_a_full_disk
+from conftest import fast_folder
+from faults import DISK_FULL, KILLED, OTHER, RECORDER, RUN, arrays
 from running import small_disk
 
 from analysis.runs.files import is_unfinished
 
-FIT = "contact_law/kernel/fit_contact_radius.py"  # writes a header of the code
-BEGINNING = 24  # calls, in which a folder is begun or emptied
+RESUME, OVERWRITE = "resume=1", "overwrite=1"
+# What the call that meets a fault is given, what the run that was in the folder before (None: none) and whether that was killed.
+SCENES = {
+    "a new run": (RUN, None, False),
+    "a resumed run": (RUN + (RESUME,), RUN, True),
+    "a run that replaces an ended one": (RUN + (OVERWRITE,), RUN + OTHER, False),
+    "a run that replaces a killed one": (RUN + (OVERWRITE,), RUN + OTHER, True),
+}
+ENDED = {"ended", "history.npz", "run.json", "states"}
 
 
-NEW, RESUMED, REPLACING, _ = SCENARIOS
-each_scenario = pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
+def sample(calls):
+    """The last call of each kind: by function and file, numbers and the random part of temporary names left out."""
+    kind = lambda call: (call.name, re.sub(r"\d+|\.[0-9a-f]{8}\.unfinished", "", call.path))
+    return list({kind(call): call for call in calls}.values())
 
 
-@each_scenario
-def test_no_fault_loses_anything(trial_of, scenario):
-    """Every 23rd call, each with each fault; a prime number, so that all kinds of calls come up."""
-    trial = trial_of(scenario)
-    assert trial.whole == ended_runs(trial.folder / "run")  # of a run without a stop
-    cases = list(trial.cases(23, offset=len(scenario.name.removeprefix("collide: ")) % 23))
-    assert len(cases) > 6 and not [case for case in cases if case.wrong]
+def killed_run(forks, folder, arguments, checkpoints=3):
+    """A run folder (Path) whose run was killed after so many checkpoints."""
+    calls = forks.run(arguments, folder).calls
+    shutil.rmtree(folder)
+    written = [call.number for call in calls if call.name == "replace" and call.path.endswith(RECORDER)]
+    assert forks.run(arguments, folder, written[checkpoints - 1] + 4).status == -9
+    return folder
 
 
-def test_a_folder_that_was_begun_or_emptied_halfway_can_be_used(trial_of):
-    """The end of an ended run's mark and files, one by one."""
-    trial = trial_of(REPLACING)
-    calls = trial.calls[:BEGINNING]
-    assert {"ended", "history.npz", "run.json"} <= {call.path for call in calls}
-    cases = [trial.case(call, "ends before") for call in calls[::3]]
-    assert not [case for case in cases if case.wrong]
+def unfinished(folder):
+    return [path for path in folder.rglob("*") if is_unfinished(path.name)]
 
 
-@pytest.mark.parametrize(
-    "scenario, file, names", [(RESUMED, "heartbeat", {"link", "rename", "unlink"}), (NEW, "ended", {"write", "rename"})]
-)
-@pytest.mark.parametrize("fault", ["ends before", "disk full from"])
-def test_no_fault_at_a_small_file(trial_of, scenario, file, names, fault):
-    """Every call that makes, replaces or removes one: heartbeats, and the mark of the end."""
-    trial = trial_of(scenario)
-    calls = [call for call in trial.calls if file in call.path]
-    assert {call.name for call in calls} >= names
-    cases = [trial.case(call, fault) for call in calls]
-    assert not [case for case in cases if case.wrong]
+@pytest.fixture(scope="module")
+def straight(forks):
+    with fast_folder() as folder:
+        assert forks.run(RUN, folder / "run").status == 0
+        yield arrays(folder / "run")
 
 
-def test_sigterm_during_a_checkpoint_and_then_sigkill(trial_of):
-    """What batch systems do: the checkpoint that is being written isn't written again in place."""
-    cases = list(trial_of(NEW).stops(2, every=37))
-    assert len(cases) > 8 and not [case for case in cases if case.wrong]
+@pytest.mark.parametrize("scene, fault", [*((scene, KILLED) for scene in SCENES), ("a new run", DISK_FULL)])
+def test_a_run_is_resumed_or_made_again_with_the_same_bits(forks, straight, scene, fault):
+    arguments, before, was_killed = SCENES[scene]
+    with fast_folder() as folder:
+        kept, run = folder / "kept" / "run", folder / "at" / "run"
+        kept.parent.mkdir()
+        if was_killed:
+            killed_run(forks, kept, before)
+        elif before:
+            assert forks.run(before, kept).status == 0
+        else:
+            kept.mkdir()
+        calls = forks.run(arguments, Path(shutil.copytree(kept, folder / "once" / "run"))).calls
+        assert len(sample(calls)) > 15
+        for call in sample(calls):
+            shutil.rmtree(run.parent, ignore_errors=True)
+            shutil.copytree(kept, run)
+            done = forks.run(arguments, run, call.number, fault)
+            if fault == KILLED:
+                assert done.status == -9
+            elif done.status:
+                assert any("No space left on device" in line for line in done.lines)
+                assert not any("Traceback" in line for line in done.lines)
+            if (run / "ended").exists():
+                assert arrays(run) in [straight, *([arrays(kept)] if (kept / "ended").exists() else [])], call
+            else:
+                again = forks.run(
+                    arguments if RESUME in arguments or OVERWRITE in arguments else [*arguments, RESUME], run
+                )
+                assert again.status == 0 and arrays(run) == straight, (call, again.lines)
+                assert unfinished(run) == [] and {path.name for path in run.iterdir()} == ENDED, call
 
 
-def test_the_calls_are_those_of_all_files(trial_of):
-    """The injector sees every file that a run leaves or has had, down to what C++ writes."""
-    calls = trial_of(NEW).calls
-    written = {call.path for call in calls if call.name == "rename"}
-    states = {f"states/{number:06d}.npz" for number in range(4)}
-    scenes = {f"checkpoint/scene-{step}.yade" for step in range(1, 7)}
-    assert written == states | scenes | {"run.json", "history.npz", "ended", RECORDER, "heartbeat.json"}
-    removed = {call.path for call in calls if call.name.startswith(("unlink", "rmdir"))}
-    others = {RECORDER, "checkpoint", "heartbeat.json", ".heartbeat-1"}
-    assert {path for path in removed if not is_unfinished(path)} == scenes | others
+# A program that writes other kinds of files, and its arguments.
+PROGRAMS = {
+    "make_packing": ("yade_scripts/make_packing.py", ("out/a.npz", "radius=4")),
+    "export": ("analysis", ("export", "run", "--format", "all", "--out", "out")),
+    "figures": ("analysis", ("figures", "run", "--out", "out")),
+    "view": ("analysis", ("view", "run", "--out", "out/view.html")),
+}
 
 
-@each_scenario
-def test_a_power_loss_takes_nothing_that_counts(trial_of, scenario):
-    assert power_loss(trial_of(scenario).calls) == []
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_no_fault_leaves_half_of_what_a_command_writes(forks, name):
+    program, arguments = PROGRAMS[name]
+    with fast_folder() as folder:
+        assert forks.run(RUN, folder / "run").status == 0
+        out = folder / "out"
+        out.mkdir()
+        files = lambda: [path for path in out.rglob("*") if path.is_file() and not is_unfinished(path.name)]
+        found = lambda: {path: path.read_bytes() for path in files()}
+        calls = forks.call(program, arguments, folder).calls
+        whole = found()
+        assert len(whole) >= 1 and len(calls) >= 3
+        for call in sample(calls):
+            for fault in (KILLED, DISK_FULL):
+                shutil.rmtree(out)
+                out.mkdir()
+                done = forks.call(program, arguments, folder, call.number, fault)
+                assert all(content == whole[path] for path, content in found().items()), call
+                assert fault == KILLED or done.status == 0 or any("No space left" in line for line in done.lines)
+                assert forks.call(program, arguments, folder).status == 0 and found() == whole
 
 
-def test_what_a_power_loss_takes_is_noticed(trial_of):
-    """The judge of the test above, on calls without one of the fsyncs that matter."""
-    calls = trial_of(NEW).calls
-    for path in ("history.npz", "states", "states/000002.npz", "checkpoint"):
-        assert power_loss([call for call in calls if (call.name, call.path) != ("fsync", path)]), path
-
-
-def test_every_module_that_writes_files_is_known():
-    """Another one needs a row, or a reason why it has none. Nothing opens a file for writing but runs/files.py, logs and the code's fits."""
-    top = Path(__file__).resolve().parents[2]
-    files = [file for folder in ("analysis", "yade_scripts", "contact_law") for file in (top / folder).rglob("*.py")]
-    texts = {str(file.relative_to(top)): file.read_text() for file in files}
-    writes = re.compile(r"\b(write_text|write_bytes|write_json|replacing|make_new|unfinished)\(")
-    opens = re.compile(r"""\bopen\([^)]*, "[rbt]*[wxa+][bt+]*"|\.(write_text|write_bytes)\(""")
-    own = "analysis/runs/files.py"
-    assert {name for name, text in texts.items() if writes.search(text) and name != own} == {*WRITERS, FIT}
-    assert {name for name, text in texts.items() if opens.search(text)} == {own, "yade_scripts/runner/workers.py", FIT}
-
-
-@pytest.mark.parametrize(
-    "name, every", [("analysis export", 29), ("make_packing", 4), ("analysis view", 3), ("study --slurm", 7)]
-)
-def test_no_fault_leaves_half_of_what_a_command_writes(trial_of, name, every):
-    command = next(command for command in COMMANDS if command.name == name)
-    cases = list(trial_of(command).cases(every))
-    assert len(cases) > 3 and not [case for case in cases if case.wrong]
-
-
-@pytest.mark.parametrize("size", [16, 24, 32, 40])
-def test_a_disk_that_is_really_full(forks, tmp_path, size):
+@pytest.mark.parametrize("size", [16, 32])
+def test_a_disk_that_is_really_full(forks, straight, tmp_path, size):
     """A small file system in memory; size in kB. A run needs less than 80."""
     with small_disk(tmp_path / "disk", f"{size}k") as disk:
-        done = forks.run(RUN, disk / "run")
-        wrong = wrong_on_a_full_disk(done)
-        assert done.status and not wrong, wrong
+        done = forks.run(RUN, Path(disk) / "run")
+        assert done.status and any("No space left on device" in line for line in done.lines)
         subprocess.run(["mount", "-o", "remount,size=4m", disk], check=True)
-        assert forks.run(RUN + ("resume=1",), disk / "run").status == 0
-        straight = forks.run(RUN, tmp_path / "straight")
-        assert straight.status == 0
-        assert arrays(disk / "run") == arrays(tmp_path / "straight")
+        assert forks.run(RUN + (RESUME,), Path(disk) / "run").status == 0
+        assert arrays(Path(disk) / "run") == straight

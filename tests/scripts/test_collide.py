@@ -7,7 +7,7 @@ import pytest
 from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, states
 
 from analysis.runs.format import CHANNELS, COLLISION
-from analysis.runs.verify import verify_run
+from analysis.runs.status import verify_run
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 

@@ -7,8 +7,8 @@ from running import completed, read_arrays, read_json
 
 from analysis.measures.ledger import closure_history
 from analysis.measures.of_run import outcome_of_run
+from analysis.runs.collect import provenance
 from analysis.runs.folder import open_run
-from analysis.runs.provenance import provenance
 from yade_scripts.experiments.collision import KIND
 
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")

@@ -8,7 +8,7 @@ import pytest
 from refused import refused
 
 from analysis import theory
-from analysis.runs.shown import settings
+from analysis.runs.folder import settings
 from yade_scripts import stability
 from yade_scripts.experiments import collision, collision_step
 from yade_scripts.experiments.collision import CollisionParameters
@@ -16,7 +16,7 @@ from yade_scripts.experiments.compression import CompressionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings import grain_number
 from yade_scripts.parameters import ParameterError
-from yade_scripts.run import arguments
+from yade_scripts.run import parameters as arguments
 
 parse = CollisionParameters.parse
 

@@ -1,17 +1,14 @@
 """Another kind of run, as one script of a user (shrinking_cell.py): it is run, recorded and studied without a change elsewhere."""
 
 import os
-import sys
 
 import numpy as np
 import pytest
-from refused import refused
 from running import call, messages, read_arrays, read_json, refusal, study
 from shrinking_cell import SHRINK
 
 from analysis import open_run
 from analysis.runs.format import CHANNELS
-from yade_scripts.run.kind import NoKind, kind_of
 
 
 def shrink(folder, *arguments):
@@ -29,7 +26,7 @@ def run(tmp_path_factory):
 def test_its_folder_has_its_series_its_states_the_cell_and_its_ledger_the_work_of_the_boundaries(run):
     """Without that work the run would have been stopped: it is many times the energy of the start."""
     about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
-    assert (about["format"], about["kind"], about["outcome"]) == (4, "shrink", "completed")
+    assert (about["format"], about["kind"], about["outcome"]) == (5, "shrink", "completed")
     assert list(about["parameters"])[:2] == ["rate", "duration"] and about["derived"]["spacing"] > 1.98e-7
     assert list(history) == ["time", *CHANNELS, "contacts", "filling"]
     strain = 3e-4 * history["time"] / about["derived"]["timeUnit"]
@@ -73,23 +70,8 @@ def test_a_study_of_two_kinds(run, tmp_path):
     assert done.returncode == 1
     script, differs = done.stderr.splitlines()
     assert script == "study.py: nothing: line 4 of both.table: none.py: no such script; the other rows are run"
-    assert differs.startswith(f"study.py: other: {run}x: holds an ended run with rate = 0.0003, not 0.0001; must be ")
+    assert differs.startswith(f"study.py: other: {run}x: holds an ended run with rate = 0.0003, not 1e-4; must be ")
     assert done.stdout.splitlines()[-1].startswith("both: 5 rows, 3 done, 2 failed; 1 undecided (longer: collide.py ")
     assert open_run(run).parameters["rate"] == 3e-4  # as it was
     kinds = {name: read_json(tmp_path, "runs", name, "run.json")["kind"] for name in ("cell", "collision")}
     assert kinds == {"cell": "shrink", "collision": "collision"}
-
-
-def test_scripts_that_define_no_kind(tmp_path, monkeypatch):
-    """Each is read anew, though of one second and size, and leaves nothing."""
-    monkeypatch.setattr(sys, "dont_write_bytecode", False)
-    script = tmp_path / "script.py"
-    for text, words in {
-        "x = 1": "defines no KIND; must be a",
-        "1/0": "division by zero",
-        "def": "invalid syntax",
-    }.items():
-        script.write_text(text)
-        with refused(NoKind, words):
-            kind_of(str(script))
-    assert [file.name for file in tmp_path.iterdir()] == ["script.py"]

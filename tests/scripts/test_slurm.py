@@ -9,9 +9,9 @@ import pytest
 from running import PYTHON, TOP, study, wait_for
 
 from yade_scripts.experiments.collision import KIND
-from yade_scripts.runner import rows, slurm, slurm_task
+from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.cost import typical_seconds
-from yade_scripts.runner.log import failure
+from yade_scripts.runner.rows import failure
 
 HEADER = "description radius velocity threads out\n"
 TABLE = HEADER + "a 5 10 1 runs/a\nb 5 11 2 runs/b\nc 5 12 1 runs/c\nrefused 5 -1 1 runs/d\n"
@@ -24,7 +24,7 @@ SCRIPT = f"""#!/bin/sh
 #SBATCH --requeue
 #SBATCH --open-mode=append
 #SBATCH --output=runs/logs/three/slurm-1/%a.out
-exec {PYTHON} {TOP}/yade_scripts/runner/slurm_task.py runs/logs/three/slurm-1/rows.table "$SLURM_ARRAY_TASK_ID" 1
+exec {PYTHON} {TOP}/yade_scripts/runner/slurm.py runs/logs/three/slurm-1/rows.table "$SLURM_ARRAY_TASK_ID" 1
 # sbatch --parsable --time=5 runs/logs/three/slurm-1/job.sh
 """
 
@@ -150,7 +150,7 @@ def signals():
 def begin(tmp_path, signals):
     """begin(script) -> a Task that runs it in a worker, the exit status to come, and the log."""
     log, script = tmp_path / "a.log", tmp_path / "script.py"
-    task = slurm_task.Task()
+    task = slurm.Task()
 
     def begin(text):
         script.write_text(text)
@@ -179,7 +179,7 @@ def test_what_a_log_says_of_a_run(begin):
 
 @pytest.mark.parametrize("number, near", [(signal.SIGUSR1, True), (signal.SIGTERM, False)], ids=["limit", "SIGTERM"])
 def test_a_signal_to_the_task_alone_is_passed_on_once(begin, monkeypatch, number, near):
-    monkeypatch.setattr(slurm_task, "ALL_SIGNALLED", 0.2)
+    monkeypatch.setattr(slurm, "ALL_SIGNALLED", 0.2)
     for deaf in (False, True):
         task, running, log = begin(f"DEAF = {deaf}" + STOPS)
         wait_for(lambda: log.exists() and told(log))
@@ -191,7 +191,7 @@ def test_a_signal_to_the_task_alone_is_passed_on_once(begin, monkeypatch, number
 
 def test_a_signal_to_all_of_the_job_is_not_passed_on(begin, monkeypatch):
     """Passed on, it would end the run, which has handled one, without its checkpoint."""
-    monkeypatch.setattr(slurm_task, "ALL_SIGNALLED", 0.2)
+    monkeypatch.setattr(slurm, "ALL_SIGNALLED", 0.2)
     task, running, log = begin("DEAF = True" + STOPS)
     wait_for(lambda: log.exists() and told(log) and task._worker.run)
     for process in (task._worker.process.pid, task._worker.run, os.getpid()):
@@ -217,21 +217,22 @@ def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
         task._note(signal.SIGUSR1, None)
         return 143
 
-    monkeypatch.setattr(slurm_task.Task, "_run", stopped)
-    assert slurm_task.main(["logs/slurm-1/rows.table", "1", "1"]) == 143  # of the second row no state is asked
+    monkeypatch.setattr(slurm.Task, "_run", stopped)
+    assert slurm.main(["logs/slurm-1/rows.table", "1", "1"]) == 143  # of the second row no state is asked
     asked = tmp_path / "scontrol"
     assert asked.read_text() == "requeue 12_3\n" if requeued else not asked.exists()
 
 
 def test_a_row_that_ended_or_runs_elsewhere_is_not_run(tmp_path, capsys, monkeypatch):
     write_table(tmp_path, ONE, "rows.table")
-    monkeypatch.setattr(slurm_task.Task, "_run", None)
+    monkeypatch.setattr(slurm.Task, "_run", None)
     for state, status, text in (
         (rows.State(rows.DONE, 1.0), 0, "a: has ended before\n"),
-        (rows.State(rows.RUNNING, host="node7", note="on node7"), 1, "slurm_task.py: a: is running on node7\n"),
-        (rows.State(rows.FAILED, note="holds another"), 1, "slurm_task.py: a: holds another\n"),
+        (rows.State(rows.RUNNING, host="node7", note="on node7"), 1, "slurm.py: a: is running on node7\n"),
+        (rows.State(rows.FAILED, note="holds another"), 1, "slurm.py: a: holds another\n"),
     ):
-        monkeypatch.setattr(rows, "state", lambda *_, state=state, **__: state)
-        assert slurm_task.main([str(tmp_path / "rows.table"), "1", "1"]) == status
+        monkeypatch.setattr(rows, "state", lambda *_, state=state: state)
+        monkeypatch.setattr(rows, "refusal", lambda _, state=state: state.note or None)
+        assert slurm.main([str(tmp_path / "rows.table"), "1", "1"]) == status
         said = capsys.readouterr()
         assert said.out + said.err == text

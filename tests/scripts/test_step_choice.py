@@ -15,7 +15,7 @@ from yade_scripts.experiments import collision, collision_step, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
-from yade_scripts.run.agreement import difference
+from yade_scripts.run.resuming import difference
 
 AUTO = {"stepFraction": "auto"}
 parse = KIND.parse

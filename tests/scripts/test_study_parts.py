@@ -12,12 +12,12 @@ from yade_scripts.experiments.collision import KIND, default_duration, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.placing import first_touch
-from yade_scripts.run import agreement, table
-from yade_scripts.run.arguments import gather
-from yade_scripts.run.closing_line import closing_line, outcome_told
-from yade_scripts.runner import batch, cost, rows, view
+from yade_scripts.run import resuming, table
+from yade_scripts.run.parameters import gather
+from yade_scripts.run.report import closing_line, outcome_in
+from yade_scripts.runner import batch, cost, rows
 from yade_scripts.runner.batch import StudyFolder
-from yade_scripts.runner.screen import Screen
+from yade_scripts.runner.study import Screen, live_table, total_left
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
@@ -75,29 +75,11 @@ def test_runs_that_ended_are_looked_at_once(tmp_path, monkeypatch):
     study_folder, given = StudyFolder("any"), [row(out=f"r{number}", seed=number) for number in range(500)]
     states = [rows.State(rows.DONE, 1.0, 2.0)] * 400 + [rows.State(rows.WAITING)] * 100
     for _ in range(3):
-        left = view.total_left(states, study_folder.cost(given, states), given, 1)
+        left = total_left(states, study_folder.cost(given, states), given, 1)
     assert len(looked) == 400 and len(models) == cost.MOST + 3 * 100
     states[400] = states[0]
-    assert view.total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(
-        left * 99 / 100, rel=1e-9
-    )
+    assert total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(left * 99 / 100, rel=1e-9)
     assert len(looked) == 401
-
-
-def test_failures_count_from_a_moment_on_whatever_the_clock_does(tmp_path):
-    given, log = row(out=str(tmp_path / "run")), tmp_path / "log"
-    (tmp_path / "run").mkdir()
-    for file, text in (
-        (log, "\nJOB SUMMARY\nstatus  : 256\n"),
-        (tmp_path / "run" / "run.json", '{"outcome": "failed: x"}'),
-    ):
-        file.write_text(text)
-        before = rows.traces(given, str(log))
-        assert rows.state(given, str(log)).kind == rows.FAILED
-        assert rows.state(given, str(log), before).kind == rows.WAITING
-        os.utime(file, (0, 0))  # written anew after the clock was set back
-        assert rows.state(given, str(log), before).kind == rows.FAILED
-        file.unlink()
 
 
 def test_contact_updates_are_those_of_a_packing():
@@ -159,7 +141,7 @@ def test_makespan(running, waiting, at_once, expected):
 
 def differences(wanted, run):
     """Of the wanted parameters, and of those with each of some changed, from a run."""
-    return lambda **changed: agreement.difference(KIND, wanted.changed(**changed), run)
+    return lambda **changed: resuming.difference(KIND, wanted.changed(**changed), run)
 
 
 def test_difference_names_the_first_parameter_that_disagrees():
@@ -223,14 +205,14 @@ def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
 
 @pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])
 def test_the_outcome_is_read_back_from_the_closing_line(outcome):
-    assert outcome_told("Welcome\n" + closing_line("runs/a (1)\n", outcome, 12.34) + "\nbye\n") == outcome
-    assert outcome_told("Welcome\n") is None
+    assert outcome_in("Welcome\n" + closing_line("runs/a (1)\n", outcome, 12.34) + "\nbye\n") == outcome
+    assert outcome_in("Welcome\n") is None
 
 
 def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
     three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
     states = [rows.State(rows.RUNNING, 0.43, 60, 25.0), rows.State(rows.DONE, 1.0, 44.0)]
-    text = view.live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], cost.Cost(), 2)
+    text = live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], cost.Cost(), 2)
     assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
     assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
     terminal, file = Terminal(), StringIO()

@@ -9,7 +9,7 @@ from running import COLLIDE, PYTHON, STUDY, call, process_writing, same_bits, st
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows
 from yade_scripts.runner.batch import Batch, StudyFolder
-from yade_scripts.runner.log import failure
+from yade_scripts.runner.rows import failure
 
 RUNS = {
     "bcca": "packing=bcca grains=32 velocity=10 duration=60e-9",

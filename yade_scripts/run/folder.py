@@ -1,24 +1,41 @@
 """Writing a run folder, whose format is that of analysis.runs.format; each file is whole or not there."""
 
-import fcntl
+import errno
+import hashlib
 import os
+import re
 from contextlib import suppress
 
+from analysis.runs import lock
+from analysis.runs.files import RunFolderError as Unreadable
 from analysis.runs.files import (
     is_unfinished,
     json_text,
+    make_folder,
     npz,
+    read_json,
     remove_unfinished,
-    require_output,
-    sums_text,
     sync,
     write_file,
 )
-from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER
+from analysis.runs.format import (
+    CHECKPOINT_FOLDER,
+    ENDED_FILE,
+    FORMAT,
+    HISTORY_FILE,
+    LOCK_FILE,
+    READABLE,
+    RUN_FILE,
+    STATES_FOLDER,
+    state_file,
+)
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
-from yade_scripts.run.heartbeat import Beating, RunsElsewhere, is_heartbeat, require_stopped
-from yade_scripts.run.written import RECORDER, Written, state_name
+
+# Names of files, seen from the folder, that runs write; nothing else is ever removed.
+_OF_RUNS = re.compile(
+    rf"{RUN_FILE}|{ENDED_FILE}|{HISTORY_FILE}|{STATES_FOLDER}/\d{{6,}}\.npz|{checkpoint.RECORDER}|{CHECKPOINT_FOLDER}/scene-\d+\.yade"
+)
 
 
 class RunFolderError(InputError):
@@ -26,71 +43,65 @@ class RunFolderError(InputError):
 
 
 class RunFolder:
-    """Writer of one run. Makes the folder, or empties that of an earlier run if it may: of the files that runs have written
-    into it (run.written), and no others.
+    """Writer of one run, which has the folder until close().
 
-    Raises RunFolderError when the folder can't be written, holds something else, is being written by another
-    run, or holds a run that has ended and overwrite is false. With resume, a folder with a checkpoint is left as
-    it is, and .checkpoint is that checkpoint, otherwise None; raises CheckpointError when it can't be read.
-    heartbeat: whether it has one from now on, or, when it is left as it is, from begin_heartbeat() on, until close().
-    states: how many will be written; each of more than that is put on the list when it comes.
-    What write_...() raises is OSError, also when a run of another machine has taken over the folder.
+    Makes the folder, or removes the files of an earlier run from it if it may. With resume, a folder with a checkpoint is left
+    as it is, and .checkpoint is that checkpoint, otherwise None.
+
+    Raises RunFolderError when the folder can't be written, holds something else, is being written by another run, holds a run
+    that has ended and overwrite is false, or one that was stopped and neither resume nor overwrite is true; CheckpointError when
+    the checkpoint can't be read. What write...() raises is OSError.
     """
 
-    def __init__(self, path, overwrite=False, resume=False, heartbeat=False, states=0):
-        self.path = path
-        self.checkpoint = self._heartbeat = None
-        self.states = os.path.join(path, STATES_FOLDER)
+    def __init__(self, path, overwrite=False, resume=False):
+        self.path, self.checkpoint = path, None
+        self.sums = {}  # {file: SHA-256} of what was written, by this process and before its checkpoint
+        self._lock = None
         try:
-            self._lock = _made_and_locked(path)
-            try:
-                # Only now: until the lock was taken, another run may have come to its end there.
-                if heartbeat:
-                    self._not_elsewhere(require_stopped)
-                self._run, self._written = _usable(path, overwrite, resume)
-                stopped = checkpoint.exists(path) and not (overwrite and self.has_ended())
-                if stopped and not (resume or overwrite) and RECORDER in self._written.names:
-                    raise RunFolderError(
-                        f"out = {path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
-                        "(to continue it) or overwrite=1 (to start again)"
-                    )
-                if stopped and resume:
-                    self.checkpoint = checkpoint.Checkpoint(path)
-                else:
-                    if heartbeat:
-                        self.begin_heartbeat()
-                    self._begin(states)
-            except BaseException:
-                self.close()
-                os.close(self._lock)
-                raise
+            make_folder(path)
+            _require_ours(path)
+            self._lock = lock.take(path)
+            self._begin(overwrite, resume)
+        except lock.InUse as problem:
+            raise RunFolderError(f"out = {path}: {problem}") from None
         except OSError as error:
+            self.close()
             raise _unwritable(path, error) from None
+        except BaseException:
+            self.close()
+            raise
 
-    def begin_heartbeat(self):
-        """Take the folder before other machines, too. Raises RunFolderError."""
-        try:
-            self._heartbeat = self._not_elsewhere(Beating)
-        except OSError as error:
-            raise _unwritable(self.path, error) from None
+    def _begin(self, overwrite, resume):
+        ended, stopped = self.has_ended(), checkpoint.exists(self.path)
+        if ended and not (overwrite or resume and stopped):
+            raise RunFolderError(
+                f"out = {self.path}: holds a run that has ended; must be another folder, or overwrite=1"
+            )
+        if stopped and not (resume or overwrite):
+            raise RunFolderError(
+                f"out = {self.path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
+                "(to continue it) or overwrite=1 (to start again)"
+            )
+        if stopped and resume and not (overwrite and ended):
+            self.checkpoint = checkpoint.Checkpoint(self.path)
+        else:
+            self._remove(lambda name: True)
 
-    def begin_again(self):
-        """begin_heartbeat() for a run that goes on from its checkpoint; one that had ended has not any more."""
-        self.begin_heartbeat()
-        if self.has_ended():
-            self._written.remove(lambda name: name == ENDED_FILE)
-            sync(self.path)
+    def resume(self):
+        """Go on from the checkpoint, after it was checked: a run that had ended has not any more."""
+        self._remove(lambda name: name == ENDED_FILE)
+        self.sums.update(self.checkpoint.sums)
+        self.keep_states(self.checkpoint.states)
 
     def close(self):
-        """End the heartbeat; the lock stays until the process ends."""
-        if self._heartbeat:
-            self._heartbeat.stop()
-            self._heartbeat = None
+        """Give the folder back."""
+        if self._lock is not None:
+            lock.release(self.path, self._lock)
+            self._lock = None
 
     def write_run(self, run):
         """run.json from a dictionary that JSON can hold."""
-        self._run = run
-        self._write_run()
+        self.write(RUN_FILE, json_text({"format": FORMAT, **run}).encode())
 
     def write_history(self, series):
         """history.npz from {name: (T,) array}, every name of the kind's history."""
@@ -98,83 +109,53 @@ class RunFolder:
 
     def write_state(self, number, state):
         """states/NNNNNN.npz from {name: array}."""
-        self.write(state_name(number), npz(**state))
+        self.write(f"{STATES_FOLDER}/{state_file(number)}", npz(**state))
 
     def write(self, name, content):
-        """Write a file of bytes, which comes on the folder's list before. name: seen from the folder."""
-        if self._written.claim([name]):
-            self._write_run()
-        self._write(name, content)
+        """Write a file of bytes; name: seen from the folder."""
+        file = os.path.join(self.path, name)
+        os.makedirs(os.path.dirname(file), exist_ok=True)
+        write_file(file, content)
+        self.sums[name] = hashlib.sha256(content).hexdigest()
 
     def keep_states(self, number):
-        """Remove all states but the first `number`, and what a killed writer has left."""
-        for folder in (self.path, self.states, os.path.join(self.path, CHECKPOINT_FOLDER)):
-            remove_unfinished(folder)
-        self._written.remove(lambda name: os.path.dirname(name) == STATES_FOLDER and name >= state_name(number))
+        """Remove all states but the first `number`."""
+        self._remove(lambda name: name.startswith(STATES_FOLDER) and name >= f"{STATES_FOLDER}/{state_file(number)}")
 
     def remove_checkpoint(self, but=()):
         """Remove the files of checkpoints, but those of these names (seen from the folder)."""
-        self._written.remove(lambda name: os.path.dirname(name) == CHECKPOINT_FOLDER and name not in but)
-        with suppress(OSError):  # there is none, or it holds what no run has written
-            os.rmdir(self._file(CHECKPOINT_FOLDER))
+        self._remove(lambda name: name.startswith(CHECKPOINT_FOLDER) and name not in but)
+        with suppress(OSError):  # it is not there, or holds something else
+            os.rmdir(os.path.join(self.path, CHECKPOINT_FOLDER))
 
     def write_ended(self):
-        """The mark that the run came to its planned end, with the sums of its files: written last, when all the rest is on the disk."""
-        try:
-            self.write(ENDED_FILE, sums_text(self.path, self._written.results()))
-        except OSError:
-            with suppress(OSError):
-                os.unlink(self._file(ENDED_FILE))
-            raise
+        """The mark that the run came to its planned end, with the sums of its files: written last."""
+        names = sorted(name for name in self.sums if not name.startswith(CHECKPOINT_FOLDER))
+        sync(os.path.dirname(os.path.abspath(self.path)))
+        write_file(os.path.join(self.path, ENDED_FILE), "".join(f"{self.sums[name]}  {name}\n" for name in names))
 
     def has_ended(self):
         """Whether the mark is there that the run came to its planned end."""
-        return os.path.exists(self._file(ENDED_FILE))
+        return os.path.exists(os.path.join(self.path, ENDED_FILE))
 
-    def _file(self, name):
-        return os.path.join(self.path, name)
+    def _remove(self, wanted):
+        """Remove the files of runs whose name is wanted, and what killed writers have left.
 
-    def _require_kept(self):
-        if self._heartbeat:
-            self._heartbeat.require_kept()
-
-    def _write(self, name, content):
-        self._require_kept()
-        write_file(self._file(name), content)
-
-    def _write_run(self):
-        run = {"format": FORMAT, **self._run, "files": sorted(self._written.names)}
-        self._write(RUN_FILE, json_text(run))
-
-    def _begin(self, states):
-        """Remove an earlier run's files, and nothing else: the mark of its end first; run.json, with all on its list, stays in all
-        moments."""
-        own = Written.of_run(self.path, states)
-        self._written.claim(own.names)
-        if self.has_ended():
-            self._written.remove(lambda name: name == ENDED_FILE)
-            sync(self.path)  # before what it vouches for is gone
-        self._run = {}
-        self._write_run()
-        self.remove_checkpoint()
-        self._written.remove()
-        self._written = own
-        os.makedirs(self.states, exist_ok=True)
-        self.keep_states(0)
-
-    def _not_elsewhere(self, take):
-        """take(path of the folder), where no run of another machine writes there; RunFolderError where one does."""
-        try:
-            return take(self.path)
-        except RunsElsewhere as where:
-            raise RunFolderError(
-                f"out = {self.path}: another run is writing there, {where}; must be another folder"
-            ) from None
-
-
-def write_json(path, content):
-    """A dictionary as a JSON file, whole or not there."""
-    write_file(path, json_text(content))
+        The mark of the end goes first, then recorder.npz, without which a checkpoint is none; run.json, by which a folder is known
+        as a run's, goes last."""
+        found = []
+        for folder in ("", STATES_FOLDER, CHECKPOINT_FOLDER):
+            place = os.path.join(self.path, folder)
+            remove_unfinished(place)
+            names = os.listdir(place) if os.path.isdir(place) else []
+            found += [os.path.join(folder, name) for name in names]
+        order = {ENDED_FILE: 0, checkpoint.RECORDER: 1, RUN_FILE: 3}
+        chosen = [name for name in found if _OF_RUNS.fullmatch(name) and wanted(name)]
+        for name in sorted(chosen, key=lambda name: order.get(name, 2)):
+            os.unlink(os.path.join(self.path, name))
+            self.sums.pop(name, None)
+            if name == ENDED_FILE:
+                sync(self.path)
 
 
 def _unwritable(path, error):
@@ -184,46 +165,19 @@ def _unwritable(path, error):
     return RunFolderError(f"out = {path}: {where}{error.strerror}{wanted}")
 
 
-def _usable(path, overwrite, resume):
-    """(run.json, Written) of the run in a folder, {} and an empty one for a new folder; RunFolderError where it holds something
-    else, or a run that has ended and may not be replaced."""
-    if _is_empty(path):
-        return {}, Written(path)
-    if not os.path.lexists(os.path.join(path, RUN_FILE)):
+def _require_ours(path):
+    """Raise RunFolderError for a folder that holds something else than a run, or nothing."""
+    if not [name for name in os.listdir(path) if name != LOCK_FILE and not is_unfinished(name)]:
+        return
+    for name in (STATES_FOLDER, CHECKPOINT_FOLDER):
+        if os.path.islink(os.path.join(path, name)):
+            raise OSError(errno.EINVAL, "is a link; must be a folder", os.path.join(path, name))
+    try:
+        run = read_json(os.path.join(path, RUN_FILE))
+    except Unreadable:
+        run = None
+    ours = {"format", "parameters", "derived", "outcome"}
+    if not (isinstance(run, dict) and ours <= set(run) and run["format"] in READABLE):
         raise RunFolderError(
             f"out = {path}: exists and is no run folder; must be a new folder, or one of an earlier run"
         )
-    require_output(os.path.join(path, RUN_FILE))
-    run, written = Written.read(path)
-    if written is None:
-        raise RunFolderError(
-            f"out = {path}: its {RUN_FILE} has no list of the files that a run wrote (as of another program, or before version "
-            "0.5.0); must be another folder, or that one moved away"
-        )
-    if os.path.exists(os.path.join(path, ENDED_FILE)) and not (overwrite or resume and checkpoint.exists(path)):
-        raise RunFolderError(f"out = {path}: holds a run that has ended; must be another folder, or overwrite=1")
-    written.require_files()
-    return run, written
-
-
-def _is_empty(path):
-    """Whether a folder holds nothing but what a run that was killed at its beginning may leave."""
-    names = [name for name in os.listdir(path) if not is_unfinished(name) and not is_heartbeat(path, name)]
-    states = os.path.join(path, STATES_FOLDER)
-    return not names or (
-        names == [STATES_FOLDER] and os.path.isdir(states) and not os.path.islink(states) and _is_empty(states)
-    )
-
-
-def _made_and_locked(path):
-    """The folder opened and locked for as long as this process lives (a killed run leaves no lock behind)."""
-    if os.path.exists(path) and not os.path.isdir(path):
-        raise RunFolderError(f"out = {path}: is a file; must be a folder")
-    os.makedirs(path, exist_ok=True)
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise RunFolderError(f"out = {path}: another run is writing there; must be another folder") from None
-    return handle

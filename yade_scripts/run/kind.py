@@ -1,15 +1,14 @@
-"""What run/ and runner/ know of a kind of run: one Kind for each file of experiments/, named KIND in its script."""
+"""What run/ and runner/ know of a kind of run: a Kind for each file of experiments/, and when a run is sampled."""
 
-import os
-import sys
 from dataclasses import dataclass, field
+from math import ceil
 from typing import Any, Callable, Mapping, NamedTuple
 
 import numpy as np
 
 from analysis.runs.format import RunKind
-from analysis.runs.script import module_of
-from yade_scripts.parameters.errors import InputError
+
+MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
 
 class Estimate(NamedTuple):
@@ -86,23 +85,32 @@ class Kind:
         return self.parameters.parse(texts, description)
 
 
-class NoKind(InputError):
-    """A script that defines no kind of run; the message is one line."""
+@dataclass(frozen=True)
+class Schedule:
+    """Steps of the run; a sample every `interval` of them and at both ends; which samples become states."""
 
+    steps: int
+    interval: int
+    states: frozenset
 
-def kind_of(script):
-    """The KIND that a script defines; raises NoKind. The script is imported, not run."""
-    if not os.path.isfile(script):
-        raise NoKind(f"{script}: no such script")
-    name = "script_" + os.path.splitext(os.path.basename(script))[0]
-    path = list(sys.path)
-    try:
-        module = module_of(script, name)
-    except (Exception, SystemExit) as error:
-        raise NoKind(f"{script}: {' '.join(str(error).split()) or type(error).__name__}") from None
-    finally:
-        sys.path[:] = path
-    kind = getattr(module, "KIND", None)
-    if not isinstance(kind, Kind):
-        raise NoKind(f"{script}: defines no KIND; must be a script such as yade_scripts/collide.py")
-    return kind
+    @property
+    def samples(self):
+        """Number of intervals between samples."""
+        return self.steps // self.interval
+
+    def samples_after(self, iteration, fused):
+        """Number of samples taken when O.iter is `iteration`. fused: an O.step is all steps between two samples, and the
+        start is sampled first; otherwise the first step of each interval begins with a sample."""
+        return iteration + 1 if fused else (iteration - 1) // self.interval + 1
+
+    @classmethod
+    def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22, kept=None):
+        """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.
+
+        Runs of more than MOST_SAMPLES intervals are sampled less often. kept: the interval of a run that is continued.
+        """
+        steps = max(1, ceil(duration / time_step * (1 - 1e-12)))
+        interval = kept or max(1, min(interval, steps // fewest_samples), ceil(steps / MOST_SAMPLES))
+        samples = ceil(steps / interval)
+        chosen = np.linspace(0, samples, states).round().astype(int)
+        return cls(samples * interval, interval, frozenset(int(number) for number in chosen))

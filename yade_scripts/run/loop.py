@@ -1,19 +1,25 @@
 """Steps a scene to its end, or to where it is stopped or fails."""
 
-from yade.wrapper import Omega
+import signal
+import sys
 
-from yade_scripts.run.progress import progress_bar
-from yade_scripts.run.stop_signals import StopSignals
+from analysis.progress import tqdm
 
 
 def run(steps, recorder, runner, begin, checkpoints):
-    """Call begin(), step until that many O.steps are taken or the scene is at its end; return (outcome, exit status).
+    """Call begin(), and step until that many O.steps are taken or the scene is at its end.
 
-    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being
-    taken, with a checkpoint and one more step that records where it stopped; the outcome is then
-    "interrupted". A scene from a checkpoint has taken some of the steps; one that has ended before its time
-    (recorder.finished) takes no more.
+    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being taken, with a
+    checkpoint and one more step that records where it stopped; the outcome is then "interrupted". A scene from a checkpoint has
+    taken some of the steps; one that has ended before its time (recorder.finished) takes no more.
+
+    Returns
+    -------
+    (str, int)
+        outcome, exit status
     """
+    from yade.wrapper import Omega
+
     omega, stop = Omega(), StopSignals()
     progress = progress_bar(steps, omega.iter)
     try:
@@ -45,3 +51,25 @@ def one_line(error):
     if isinstance(error, OSError) and error.filename:
         return f"{error.filename}: {error.strerror}"
     return " ".join(str(error).split()) or type(error).__name__
+
+
+def progress_bar(total, already=0, stream=sys.stderr):
+    """A bar with the time left; nothing is drawn when the stream is no terminal, and nothing stays at the end."""
+    tqdm.monitor_interval = 0  # no thread of its own
+    return tqdm(total=total, initial=already, file=stream, disable=None, leave=False, unit="step", mininterval=0.5)
+
+
+class StopSignals:
+    """Keeps the first of these signals in .received; a second one acts as it would have without this."""
+
+    def __init__(self, numbers=(signal.SIGINT, signal.SIGTERM)):
+        self.received = 0
+        self._before = {number: signal.signal(number, self._note) for number in numbers}
+
+    def restore(self):
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number, _frame):
+        self.received = number
+        self.restore()

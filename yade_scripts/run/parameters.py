@@ -1,14 +1,17 @@
-"""Parameters of every kind of run: how it is stepped, where it is written."""
+"""Parameters of every kind of run (how it is stepped, where it is written), and where a script's parameters come from."""
 
+import hashlib
 import os
 from dataclasses import dataclass
 
+from analysis.runs.format import value_text
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, between, one_of, parameter
-from yade_scripts.run.file_name import file_name
+from yade_scripts.run import table
 from yade_scripts.stability import AUTO, STABLE_STEP
 
 CORES = len(os.sched_getaffinity(0))
 TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default and range
+LONGEST = 200  # bytes of a file's name; Linux has 255, and temporary files and logs add to it
 
 
 @dataclass(frozen=True)
@@ -109,4 +112,60 @@ class RunParameters(Parameters):
         name, in_name = self.title()
         columns = self.columns()
         others = (key for key in sorted(texts) if key not in in_name and columns[key].of_consequence)
-        return name + "".join(f"-{key}{getattr(self, key)}" for key in others)
+        return name + "".join(f"-{key}{value_text(getattr(self, key))}" for key in others)
+
+
+def file_name(text, others="-_.,=+"):
+    """text as the name of one file: letters, digits and `others`, the rest as _; a long one ends in a hash of the text."""
+    name = "".join(c if c.isalnum() or c in others else "_" for c in text)
+    if len(name.encode()) <= LONGEST:
+        return name
+    end = "-" + hashlib.sha256(text.encode()).hexdigest()[:12]
+    return name.encode()[: LONGEST - len(end)].decode(errors="ignore") + end
+
+
+def from_arguments(arguments):
+    """{name: text} of arguments such as velocity=10 seed=3; raises ParameterError for anything else."""
+    texts = {}
+    for argument in arguments:
+        name, equals, text = argument.partition("=")
+        if not equals or not name:
+            raise ParameterError(f"argument '{argument}': not understood; must be name=value, or --help")
+        if name in texts:
+            raise ParameterError(f"{name}: given twice; must be given once")
+        texts[name] = text
+    return texts
+
+
+def gather(arguments, kind):
+    """A script's parameters: the row of a table, and the arguments on top of it.
+
+    The row is the one that yade-batch names (YADE_BATCH=FILE:LINE), or that of an argument table=FILE:LINE.
+
+    Returns
+    -------
+    ({name: text}, str or None)
+        The row's description; None without a row, and where an argument of consequence makes another run of it.
+    """
+    texts = from_arguments(arguments)
+    row = texts.pop("table", None) or os.environ.get("YADE_BATCH")
+    if not row:
+        return texts, None
+    columns, description = read_row(row)
+    known = kind.parameters.columns()
+    another = any(name not in known or known[name].of_consequence for name in texts)
+    return {**columns, **texts}, (None if another else description)
+
+
+def read_row(row):
+    """({column: text}, description) of FILE:LINE, lines counted from 1; columns named !... are yade-batch's own."""
+    file, _, line = row.rpartition(":")
+    if not file:
+        raise ParameterError(f"table = {row}: must be FILE:LINE, one row of a table; study.py runs all")
+    try:
+        rows = {str(found.line): found for found in table.read(file)}
+    except table.TableError as error:
+        raise ParameterError(f"table {error}") from None
+    if line not in rows:
+        raise ParameterError(f"table {row}: no such row; must be a line of {', '.join(rows)}")
+    return rows[line].parameters, rows[line].description

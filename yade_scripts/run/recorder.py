@@ -10,11 +10,18 @@ from yade.wrapper import JKRWadaEngine, Omega
 
 import contact_law
 from analysis.runs.format import BROKEN_BONDS, CHANNEL_TABLE, CHANNELS, WORK
-from yade_scripts.run.diagnosis import RunFailed, suspects
 
 SECONDS_BETWEEN_WRITES = 10
 LARGEST_LEDGER_ERROR = 0.1  # of the energies at the start and the work done since: beyond, a run isn't worth its time
 WORK_CHANNELS = [channel.name for channel in CHANNEL_TABLE if channel.kind == WORK]
+
+# What the PyRunner of a scene runs, in YADE's main namespace, and the Recorder that samples it.
+COMMAND = "from yade_scripts.run import recorder; recorder.current.sample()"
+current = None
+
+
+class RunFailed(RuntimeError):
+    """The simulation can't be continued; the message is one line."""
 
 
 def engine_counts():
@@ -83,12 +90,10 @@ class Recorder:
         return self._written
 
     def resume(self, rows, columns, states):
-        """Have these rows, of a checkpoint, as the history so far; the folder's states from number `states` on are
-        removed."""
+        """Have these rows, of a checkpoint, as the history so far, and so many states as written."""
         self.columns = list(columns)
         self._rows = [tuple(row) for row in rows.tolist()]
         self._written = states
-        self.folder.keep_states(states)
 
     def sample(self):
         try:
@@ -166,3 +171,26 @@ class Recorder:
                 f"energy is not conserved ({more:.3g} J more than at the start, of {scale:.3g} J) "
                 f"{when}: the step is too long{suspects(state)}"
             )
+
+
+def suspects(state):
+    """What to look at in a failed state: its fastest body and the contact of largest overlap, as a clause.
+
+    state: as contact_law.snapshot() gives it.
+    """
+    speed = np.linalg.norm(state["velocity"], axis=1)
+    fastest = np.argmax(speed)
+    text = f'; body {state["ids"][fastest]} is the fastest ({speed[fastest]:.4g} m/s)'
+    first, second = state["contact_pairs"].T
+    if not len(first):
+        return text + ", and none touch any more"
+    radius, apart = state["radius"], state["position"][first] - state["position"][second]
+    if "cell_size" in state:
+        apart -= state["cell_size"] * np.round(apart / state["cell_size"])  # of the nearest images
+    overlap = radius[first] + radius[second] - np.linalg.norm(apart, axis=1)
+    relative = overlap / np.minimum(radius[first], radius[second])
+    deepest = np.argmax(relative)
+    return (
+        f'{text}, the contact of largest overlap is that of body {state["ids"][first[deepest]]} and body '
+        f'{state["ids"][second[deepest]]} ({relative[deepest]:.4g} of the smaller radius)'
+    )

@@ -2,16 +2,28 @@
 
 import os
 import platform
+import re
 import sys
 import time
 from contextlib import suppress
 
 import numpy as np
 
+from analysis.printable import printable
 from yade_scripts.parameters.errors import tell
-from yade_scripts.run import continuing
-from yade_scripts.run.closing_line import closing_line
+from yade_scripts.run import resuming
 from yade_scripts.run.loop import one_line
+
+
+def closing_line(path, outcome, seconds):
+    """The last line that a script prints, by which a log says how its run ended: outcome_in() finds it."""
+    return f"run folder: {printable(path)} ({printable(outcome)}, {seconds:.1f} s)"
+
+
+def outcome_in(log):
+    """The outcome in the text of a log, or None when the script didn't get to its end."""
+    found = re.findall(r"^run folder: .*? \((completed|interrupted|failed: .*), [0-9.]+ s\)$", log, re.MULTILINE)
+    return found[-1] if found else None
 
 
 def made_with():
@@ -81,10 +93,10 @@ class Report:
             if self.run["endedBy"]:
                 print(f"ended by {self.run['endedBy']}")
             if self.undecided:
-                twice = continuing.command(self.folder.path, duration=2 * self.run["parameters"]["duration"])
+                twice = resuming.command(self.folder.path, duration=2 * self.run["parameters"]["duration"])
                 print(f"outcome undecided: {self.undecided}; to continue: {twice}")
             if outcome == "interrupted":
-                print(f"to continue: {continuing.command(self.folder.path)}")
+                print(f"to continue: {resuming.command(self.folder.path)}")
             print(closing_line(self.folder.path, outcome, self.wall_time()), flush=True)
         except OSError:  # what is left in the buffer would fail again at exit
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -1,6 +1,5 @@
 """From packings and parameters to YADE's bodies and engines."""
 
-import sys
 from math import inf, pi
 
 from yade import utils
@@ -22,6 +21,7 @@ from yade.wrapper import (
 )
 
 import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper, so it comes first)
+from yade_scripts.run import recorder as sampling
 
 # How far, in grain radii, a grain may move before the collider looks for neighbours again: less makes it look
 # more often, more makes every step test more pairs that don't touch. Measured at 6,400 grains, a step costs
@@ -114,8 +114,8 @@ def start(scene, schedule, recorder):
     scene.build()
     omega.trackEnergy = True
     omega.dt = scene.time_step
-    _publish(recorder)
-    runner = PyRunner(command="history.sample()", iterPeriod=schedule.interval, initRun=True)
+    sampling.current = recorder
+    runner = PyRunner(command=sampling.COMMAND, iterPeriod=schedule.interval, initRun=True)
     law = {"slidingStiffnessFactor": parameters.slidingStiffnessFactor, **scene.law}
     if parameters.engine == "functors":
         omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **law)
@@ -131,17 +131,12 @@ def resume(scene, schedule, recorder, saved):
     """The same for the scene of a checkpoint, which has its engines and whose start has been sampled."""
     omega = Omega()
     saved.load_scene()
-    _publish(recorder)
+    sampling.current = recorder
     fused, runner = omega.engines[0], omega.engines[-1]
     if scene.parameters.engine == "functors":
         return schedule.steps + 1, runner, lambda: None
     fused.threads = scene.parameters.threads
     return schedule.steps // schedule.interval, runner, lambda: None
-
-
-def _publish(recorder):
-    """Put the recorder where the PyRunner's command finds it: YADE runs that in the main namespace."""
-    sys.modules["__main__"].history = recorder
 
 
 def functor_engines(grain_radius, runner, limit="held", **law):

@@ -7,8 +7,8 @@ import time
 from analysis.runs.files import RunFolderError
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import InputError, one_line_errors
-from yade_scripts.run import continuing
-from yade_scripts.run.arguments import gather
+from yade_scripts.run import resuming
+from yade_scripts.run.parameters import gather
 from yade_scripts.stability import AUTO, require_countable
 
 
@@ -31,11 +31,11 @@ def main(kind, description):
         texts, row = gather(sys.argv[1:], kind)
         if "yade" not in sys.modules:
             raise InputError(f"must be run by YADE: yade -n -x {sys.argv[0]} velocity=3, say")
-        parameters = continuing.parameters(kind, texts) if continuing.CONTINUE in texts else kind.parse(texts, row)
+        parameters = resuming.continued(kind, texts) if resuming.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 
         import contact_law  # noqa: F401  (the plugin, before anything asks it)
-        from yade_scripts.run.schedule import Schedule
+        from yade_scripts.run.kind import Schedule
 
         scene = kind.prepare(parameters, Omega().numThreads)
         _require_finite(scene.parameters, scene.constants["timeUnit"])
@@ -58,22 +58,26 @@ def _require_finite(parameters, time_unit):
 
 
 def _open(kind, scene, scheduled):
-    """The run folder with its heartbeat, and its checkpoint if the run resumes from one; the Schedule.
+    """The run folder, with its checkpoint if the run resumes from one; the Schedule.
 
     scheduled(kept): the Schedule, with the interval between samples that a run which resumes has kept."""
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
 
     given, schedule = scene.parameters, scheduled()
-    states = len(schedule.states) + 1  # one where it is stopped, or fails
-    folder = RunFolder(given.out, given.overwrite, given.resume, heartbeat=True, states=states)
+    folder = RunFolder(given.out, given.overwrite, given.resume)
     saved = folder.checkpoint
-    if saved:
-        saved.require_agreement(kind, given, report.made_with())
-        schedule = scheduled(saved.interval)
-        saved.require_whole(kind.format, schedule, given.engine == "fused")
-        saved.require_time_left(schedule.steps * scene.time_step, folder.has_ended())
-        folder.begin_again()
+    try:
+        if saved:
+            differs = resuming.difference(kind, given, saved.run, but=("duration",))
+            saved.require_agreement(differs, report.made_with())
+            schedule = scheduled(saved.interval)
+            saved.require_whole()
+            saved.require_time_left(schedule.steps * scene.time_step, folder.has_ended())
+            folder.resume()
+    except BaseException:
+        folder.close()
+        raise
     return folder, schedule
 
 
@@ -81,7 +85,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
     """Step the scene to its end and write the run folder; the exit status."""
     from yade_scripts.run import loop
     from yade_scripts.run import scene as yade_scene
-    from yade_scripts.run.checkpoint_writer import CheckpointWriter
+    from yade_scripts.run.checkpoint import CheckpointWriter
     from yade_scripts.run.recorder import Recorder
     from yade_scripts.run.report import Report
 

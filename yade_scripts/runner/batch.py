@@ -1,25 +1,26 @@
-"""A study's folder for logs, its rows at work, and what is measured for the estimate."""
+"""Processes that run the rows of a study, its folder for logs, and what is measured for the estimate."""
 
 import fcntl
 import json
+import multiprocessing
 import os
+import signal
 import subprocess
 import time
 from contextlib import suppress
 from dataclasses import asdict
 from multiprocessing.connection import wait
 
-from analysis.runs.files import RunFolderError, read_json
+from analysis.runs.files import RunFolderError, json_text, read_json, write_file
 from analysis.runs.format import ENDED_FILE
 from analysis.runs.status import changed
-from yade_scripts.run.folder import write_json
 from yade_scripts.runner.cost import Cost, Piece, setup_seconds, step_seconds
-from yade_scripts.runner.rows import DONE
-from yade_scripts.runner.workers import Worker
+from yade_scripts.runner.rows import DONE, summary
 
 LOGS = os.path.join("runs", "logs")
 MEASURING, POLL = 300, 0.05  # s, at most; s between looks at it
-MEASURE_SPEED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "measure_speed.py")
+HERE = os.path.dirname(os.path.abspath(__file__))
+MEASURE, WORKER = os.path.join(HERE, "cost.py"), os.path.join(HERE, "worker.py")
 NICE = 10  # as yade-batch runs its jobs
 
 
@@ -80,10 +81,10 @@ class StudyFolder:
 
     def measure(self, row, rows, states, at_once, stop):
         """Time a piece of a row's run, at_once of them together, unless runs have ended to judge by."""
-        if any(state.kind == DONE and state.seconds for state in states):
+        if row.kind is None or any(state.kind == DONE and state.seconds for state in states):
             return
-        scene = [f"{name}={text}" for name, text in row.cells.items() if name[0] != "!"]
-        command = ["yade", "-n", f"--nice={NICE}", "-x", MEASURE_SPEED, row.script, *scene]
+        scene = [f"{name}={text}" for name, text in row.own_cells.items()]
+        command = ["yade", "-n", f"--nice={NICE}", "-x", MEASURE, row.script, *scene]
         environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
         together, begun = max(1, at_once // row.threads), time.monotonic()
         # In sessions of their own, as the runs: Linux shares processors out by session.
@@ -108,7 +109,8 @@ class StudyFolder:
         slowest = max(found, key=lambda piece: piece["step"])
         setup, step = slowest["setup"], slowest["step"]
         start = time.monotonic() - begun - setup - step * slowest["steps"]
-        write_json(self.file("speed.json"), asdict(Piece(step / step_seconds(row), setup / setup_seconds(row), start)))
+        piece = Piece(step / step_seconds(row), setup / setup_seconds(row), start)
+        write_file(self.file("speed.json"), json_text(asdict(piece)))
 
     def basis(self, rows, states):
         """What the estimate rests on, in words."""
@@ -177,3 +179,74 @@ class Batch:
             free.append(Worker(log, [f"--nice={NICE}"], **of_process))
             self._workers += free
         return free[0]
+
+
+class Worker:
+    """A process of YADE that runs rows one after another (worker.py), idle until it is given one.
+
+    It is started without a shell: names are never anything else than names.
+    log: the file to which YADE's own messages go as it starts; options: more of yade's; process: more of subprocess.Popen's.
+    """
+
+    def __init__(self, log, options=(), pass_fds=(), **process):
+        self.row = self.run = None
+        self.connection, theirs = multiprocessing.Pipe()
+        with open(log, "a") as output, theirs:
+            self.process = subprocess.Popen(
+                ["yade", "-n", *options, "-x", WORKER, str(theirs.fileno())],
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                env={**os.environ, "DISPLAY": ""},
+                pass_fds=(*pass_fds, theirs.fileno()),
+                **process,
+            )
+
+    def is_alive(self):
+        """Whether it can be given a row, now or when its run has ended."""
+        return self.process.poll() is None
+
+    def begin(self, row, log):
+        """Have it run a row (rows.StudyRow), whose output goes to the end of the file log."""
+        self.row, self.run, self._log, self._stopped = row, None, log, False
+        arguments = [f"{name}={text}" for name, text in row.arguments.items()]
+        task = dict(
+            script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=os.path.abspath(log)
+        )
+        with open(log, "a"), suppress(OSError):  # a worker that has died: poll() tells
+            self.connection.send(task)
+
+    def poll(self):
+        """The run's exit status, as a shell has it, when it has ended; None while it runs. The log is complete then."""
+        status = self._status()
+        if status is None:
+            return None
+        self.row = self.run = None
+        status = status if status >= 0 else 128 - status
+        with open(self._log, "a") as log:
+            log.write(summary(status))
+        return status
+
+    def stop(self):
+        """SIGTERM to the run, as soon as there is one to hear it."""
+        self._stopped = True
+        if self.run:
+            with suppress(ProcessLookupError):
+                os.kill(self.run, signal.SIGTERM)
+
+    def close(self):
+        """End the process, when its run has ended."""
+        self.connection.close()
+        self.process.wait()
+
+    def _status(self):
+        try:
+            while self.connection.poll():
+                self.run, status = self.connection.recv()
+                if status is not None:
+                    return status
+                if self._stopped:
+                    self.stop()
+        except (EOFError, OSError):  # of a worker that was killed, or could not start
+            return self.process.wait()
+        return None

@@ -1,12 +1,25 @@
-"""How long the rows of a study take: a model of a run's time, times the pace of runs that have ended and of a measured piece."""
+"""How long the rows of a study take: a model of a run's time, times the pace of runs that have ended and of a measured piece.
+
+    yade -n -x yade_scripts/runner/cost.py SCRIPT radius=40 filling=0.3
+
+measures a piece of a run of a script in rows.KINDS, and prints one line of JSON. setup: seconds of building the run; step: seconds
+of a small step of the fused engine, among its first `steps`. Both of the clock, as the runs will take them: on a machine that is
+busy with other work, more than of processor time.
+"""
 
 import heapq
+import json
+import os
+import sys
+import time
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from yade_scripts.run.schedule import Schedule
+if __name__ == "__main__":
+    sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
+from yade_scripts.run.kind import Schedule
 
 # Seconds of a usual processor (a core of an AMD EPYC of 2024), of runs of 60 to 51,200 grains, by processor time; linear in the
 # grains: what is there of any run, and what a grain adds.
@@ -18,9 +31,15 @@ SETUP = 0.01, 2e-4  # packings and the scene
 BETWEEN = 0.04  # from a run's end to the next one's beginning
 FUNCTORS = 37  # a step of YADE's own loop over one of the engine
 
-ALIKE = np.log(2)  # logarithm of the ratio of two runs' times at which one tells of the other half as much as an equal
-RECENT = 10  # runs that ended later halve what one tells: a machine is busier at times
-MOST = 20 * RECENT  # of a kind and engine, the latest: earlier ones tell less than a millionth
+ALIKE = np.log(
+    2
+)  # logarithm of the ratio of two runs' times at which one weighs half as much for the other as an equal
+RECENT = 10  # runs that ended later halve the weight of one: a machine is busier at times
+MOST = 20 * RECENT  # of a kind and engine, the latest: earlier ones weigh less than a millionth
+MEASURED, AT_ONCE = (
+    1.0,
+    20,
+)  # s of processor time of a measured piece, so that what else runs has its turns; steps between looks
 
 
 @dataclass(frozen=True)
@@ -48,16 +67,16 @@ class Cost:
     def _ended(self):
         """{(name of the kind, engine): (logarithms of the model's times, ratios of the times to these, weights)}."""
         by_kind = {}
-        for later, (row, time) in enumerate(reversed(self.ended)):
+        for later, (row, taken) in enumerate(reversed(self.ended)):
             found = by_kind.setdefault((row.kind.name, row.parameters.engine), [])
             if len(found) < MOST:
                 model = self._model(row)
-                found.append((np.log(model), time / model, 0.5 ** (later / RECENT)))
+                found.append((np.log(model), taken / model, 0.5 ** (later / RECENT)))
         return {key: np.array(found).T for key, found in by_kind.items()}
 
     def seconds(self, wanted):
         """Estimated wall time [s] of a row's run, or None when too little is known."""
-        if wanted.kind is None:
+        if wanted.estimate is None:
             return None
         key = wanted.kind.name, wanted.parameters.engine, self._model(wanted)
         if key not in self._known:  # the rows of a table differ in their seeds, as a rule
@@ -86,8 +105,8 @@ def contact_updates(row):
 
 
 def typical_seconds(row):
-    """Seconds that the run of a row takes on a usual processor, where nothing is known of it but the row."""
-    return setup_seconds(row) + stepping_seconds(row)
+    """Seconds that the run of a row takes on a usual processor, by the row alone; infinity for a kind of a user's own."""
+    return np.inf if row.estimate is None else setup_seconds(row) + stepping_seconds(row)
 
 
 def setup_seconds(row):
@@ -119,8 +138,41 @@ def _linear(numbers, grains):
 def makespan(running, waiting, at_once):
     """Seconds until all is done: [(time left [s], threads)] of what runs, the same of what waits in its order, threads at once."""
     ends = [0.0] * at_once
-    for time, threads in [*running, *waiting]:
+    for left, threads in [*running, *waiting]:
         taken = [heapq.heappop(ends) for _ in range(min(threads, at_once))]
         for _ in taken:
-            heapq.heappush(ends, max(taken) + time)
+            heapq.heappush(ends, max(taken) + left)
     return max(ends)
+
+
+def measure(script, arguments):
+    """Print what the head of this file says. Called within YADE."""
+    from yade_scripts.parameters.errors import one_line_errors
+    from yade_scripts.run.parameters import from_arguments
+    from yade_scripts.runner.rows import kind_of
+
+    with one_line_errors("cost.py"):
+        kind = kind_of(script)
+        parameters = kind.parse(from_arguments(arguments))
+        import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
+    from yade.wrapper import JKRWadaEngine, Omega
+
+    with one_line_errors("cost.py"):
+        omega, start = Omega(), time.monotonic()
+        scene = kind.prepare(parameters, omega.numThreads)
+    scene.build()
+    threads = scene.parameters.threads
+    fused = JKRWadaEngine(subSteps=AT_ONCE, threads=threads, **scene.law)
+    omega.dt = AT_ONCE * scene.time_step
+    omega.engines = [fused]
+    fused.prepare()
+    ready, end = time.monotonic(), time.process_time() + MEASURED * threads
+    while time.process_time() < end:
+        omega.step()
+    steps = AT_ONCE * omega.iter
+    print(json.dumps({"setup": ready - start, "step": (time.monotonic() - ready) / steps, "steps": steps}))
+
+
+if __name__ == "__main__":
+    measure(sys.argv[1], sys.argv[2:])
+    sys.exit(0)

@@ -1,35 +1,40 @@
 """The rows of a study, and what has become of each, from its run folder and its log."""
 
 import os
-import types
-from contextlib import suppress
+import re
+import signal
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from analysis.runs.format import ENDED_FILE, RUN_FILE
-from analysis.runs.running import place
+from analysis.runs.format import ENDED_FILE, same
+from analysis.runs.lock import under_way
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State, damage, end_time, run_of  # noqa: F401
 from analysis.runs.status import running as running_state
+from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import ParameterError, UnknownParameter
+from yade_scripts.parameters.arithmetic import NotANumber, evaluate
 from yade_scripts.run import checkpoint, table
-from yade_scripts.run.agreement import difference
-from yade_scripts.run.file_name import file_name
-from yade_scripts.run.kind import Kind, NoKind, kind_of
-from yade_scripts.run.parameters import RunParameters
+from yade_scripts.run.kind import Kind
+from yade_scripts.run.parameters import RunParameters, file_name
+from yade_scripts.run.report import outcome_in
+from yade_scripts.run.resuming import difference
 from yade_scripts.runner.cost import setup_seconds, stepping_seconds
-from yade_scripts.runner.log import failure
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.path.join(TOP, "yade_scripts")
+KINDS = {"collide.py": collision.KIND, "compress.py": compression.KIND}  # of the scripts in SCRIPTS
 DEFAULT_SCRIPT = os.path.join(SCRIPTS, "collide.py")
 THREADS = ("!THREADS", "!OMP_NUM_THREADS")
 OF_YADE_BATCH = ("!SCRIPT", *THREADS)  # its columns that have a meaning here, too
+STOPPED = (128 + signal.SIGINT, 128 + signal.SIGTERM)  # exit statuses of a run that was stopped
 
 
 @dataclass(frozen=True)
 class StudyRow:
-    """A row of a table: its kind of run and parameters (None where they are wrong), or the error of these. Where a script was not
-    to be run, kind is None and the parameters are those of every kind."""
+    """A row of a table.
+
+    kind and parameters are of the script in KINDS; with a script of a user's own kind is None, and the parameters are those of
+    every kind. Where they are wrong, parameters is None and error says why."""
 
     name: str
     cells: dict
@@ -50,15 +55,19 @@ class StudyRow:
         return self.threads_of_yade or self.parameters.threads or 1
 
     @property
+    def own_cells(self):
+        """The cells without yade-batch's own."""
+        return {name: text for name, text in self.cells.items() if name[0] != "!"}
+
+    @property
     def arguments(self):
-        """{name: text} that its script is given: the row's, in the run folder, which resumes if it was stopped."""
-        own = {name: text for name, text in self.cells.items() if name[0] != "!"}
-        return {**own, "out": self.out, "resume": 1}
+        """{name: text} for its script: the row's, in the run folder, which resumes if it was stopped."""
+        return {**self.own_cells, "out": self.out, "resume": 1}
 
     @cached_property
     def estimate(self):
-        """run.kind.Estimate of its run."""
-        return self.kind.estimate(self.parameters)
+        """run.kind.Estimate of its run; None for a kind of a user's own."""
+        return self.kind and self.kind.estimate(self.parameters)
 
     @cached_property
     def typical(self):
@@ -66,20 +75,19 @@ class StudyRow:
         return setup_seconds(self), stepping_seconds(self)
 
 
-def read(path, run_scripts=True):
+def read(path):
     """[StudyRow] of a table; raises TableError, also when two rows would write to one folder or one log.
 
-    The column !SCRIPT names the script of a row's kind of run, as for yade-batch; without it rows are collisions. run_scripts: whether
-    scripts of others than this suite may be imported, which tell their kinds of run.
-    """
-    rows, lines, kinds = [], {}, {}
+    Rows without !SCRIPT are collisions."""
+    rows, lines = [], {}
     for row in table.read(path):
         _require_columns(path, row)
-        name = file_name(row.description)
-        script, kind, parameters, threads, error = find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT)), *[None] * 4
+        name, script = file_name(row.description), find_script(row.cells.get("!SCRIPT", DEFAULT_SCRIPT))
+        kind, parameters, threads, error = kind_of(script), None, None, None
         try:
-            if run_scripts or os.path.dirname(os.path.realpath(script)) == os.path.realpath(SCRIPTS):
-                kind = kinds[script] = kinds.get(script) or kind_of(script)
+            if not os.path.isfile(script):
+                raise ParameterError(f"{script}: no such script")
+            if kind:
                 parameters = kind.parse(row.parameters, row.description)
             else:
                 known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
@@ -88,7 +96,7 @@ def read(path, run_scripts=True):
         except UnknownParameter as problem:  # a column's, of all rows
             of = os.path.basename(script) + (": a column !SCRIPT names another" if "!SCRIPT" not in row.cells else "")
             raise table.TableError(f"{path}: {problem}, of {of}") from None
-        except (ParameterError, NoKind) as problem:
+        except ParameterError as problem:
             parameters, error = None, f"line {row.line} of {path}: {problem}"
         for key in (f"description = {name}", f"out = {os.path.normpath(parameters.out) if parameters else name}"):
             if key in lines:
@@ -111,77 +119,10 @@ def find_script(name):
     return own if not os.path.isfile(name) and os.path.isfile(own) else name
 
 
-def traces(row, log):
-    """{file: when and where it was written} of what tells of a row's failure, for state(); of no clock but the files' own."""
-    found = {}
-    for file in () if row.error else (log, os.path.join(row.out, RUN_FILE)):
-        with suppress(OSError):
-            about = os.stat(file)
-            found[file] = about.st_mtime_ns, about.st_ino
-    return found
-
-
-def state(row, log, before=types.MappingProxyType({})):
-    """What has become of a row. log: the file that its output goes to; failures of which traces() were there `before` don't count."""
-    if row.error:
-        return State(FAILED, note=row.error)
-    folder = row.out
-    where = place(folder)  # first: a run that ends now has its mark before it gives up the lock and its heartbeat
-    run = run_of(folder)
-    if os.path.exists(os.path.join(folder, ENDED_FILE)) and not _goes_on(row, run):
-        return _ended(row, run)
-    if where:
-        return running_state(folder, run, where)
-    outcome = run.get("outcome", "")
-    note, progress = _stopped(folder, run)
-    now = traces(row, log)
-    new = {file for file in now if now[file] != before.get(file)}
-    problem = failure(log, folder) if log in new else None
-    if problem:
-        return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
-    if outcome.startswith("failed") and os.path.join(folder, RUN_FILE) in new:
-        return State(FAILED, progress, note=f"{folder}: {outcome}")
-    return State(WAITING, progress, run.get("wallTime"), note=note)
-
-
-def _ended(row, run):
-    if not run:
-        return State(FAILED, note=f"{damage(row.out)}; must be restored, or {row.out} removed to run the row")
-    differs = row.kind and difference(row.kind, row.parameters, run)
-    if differs:
-        note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
-        return State(FAILED, note=note)
-    return State(DONE, 1.0, run.get("wallTime"))
-
-
-def _goes_on(row, run):
-    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, of which the row asks for more."""
-    if not (row.kind and run and checkpoint.exists(row.out)):
-        return False
-    found = [difference(row.kind, row.parameters, run, but) for but in ((), ("duration",))]
-    return found[0] is not None and found[1] is None
-
-
-def undecided(rows, states):
-    """'; 3 undecided (...)' of rows whose runs have ended with their outcome open, and so with a checkpoint; or ''."""
-    found = [row for row, state in zip(rows, states) if state.kind == DONE and checkpoint.exists(row.out)]
-    if not found:
-        return ""
-    return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
-
-
-def _stopped(folder, run):
-    """(what to say of a run that didn't come to its end, how far its checkpoint is)."""
-    if not run:
-        return "", 0.0
-    if not checkpoint.exists(folder):
-        return ("starts again", 0.0) if run.get("outcome") in ("running", "interrupted") else ("", 0.0)
-    try:
-        rows = checkpoint.Checkpoint(folder).rows
-    except checkpoint.CheckpointError:
-        return "", 0.0
-    reached = rows[-1][0] / end_time(run) if len(rows) else 0.0
-    return f"checkpoint at {100 * reached:.0f} %", reached
+def kind_of(script):
+    """The Kind of a script (path), None of one of a user's own."""
+    folder, name = os.path.split(os.path.realpath(script))
+    return KINDS.get(name) if folder == os.path.realpath(SCRIPTS) else None
 
 
 def _require_columns(path, row):
@@ -204,3 +145,126 @@ def _threads_of_yade(cells, parameters):
             raise ParameterError(f"{name} = {given}: threads are {found}; must be the same")
         found = given
     return found
+
+
+# What has become of a row.
+
+
+def refusal(row):
+    """Why a row must not be run, in one line; None where it may, if it has not ended."""
+    if row.error:
+        return row.error
+    lock = under_way(row.out)
+    if lock and not lock.can_be_followed:
+        return f"{row.out}: is run {lock}; must have ended there, or {row.out}/lock be removed"
+    found = _ended(row, run_of(row.out)) if _has_ended(row) else None
+    return found.note if found and found.kind == FAILED else None
+
+
+def state(row, log):
+    """What has become of a row; log: the file that its output goes to. Why it must not be run is FAILED, too."""
+    refused = refusal(row)
+    if refused:
+        return State(FAILED, note=refused)
+    folder, lock = row.out, under_way(row.out)  # the lock first: a run that ends now has its mark before it gives it up
+    run = run_of(folder)
+    if _has_ended(row):
+        return _ended(row, run)
+    if lock:
+        return running_state(folder, run, lock)
+    note, progress = _stopped(folder, run)
+    problem = failure(log, folder)
+    if problem:
+        return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
+    return State(WAITING, progress, run.get("wallTime"), note=note)
+
+
+def _has_ended(row):
+    return os.path.exists(os.path.join(row.out, ENDED_FILE)) and not _goes_on(row)
+
+
+def _ended(row, run):
+    if not run:
+        return State(FAILED, note=f"{damage(row.out)}; must be restored, or {row.out} removed to run the row")
+    differs = _difference(row, run)
+    if differs:
+        note = f"{row.out}: holds an ended run with {differs}; must be the same, or removed to run the row"
+        return State(FAILED, note=note)
+    return State(DONE, 1.0, run.get("wallTime"))
+
+
+def _difference(row, run):
+    """resuming.difference() of a run from a row; of a kind of a user's own in what the row gives."""
+    if row.kind:
+        return difference(row.kind, row.parameters, run)
+    for name, text in row.own_cells.items():
+        held = run.get("parameters", {}).get(name, text)
+        try:
+            wanted = evaluate(text)
+        except NotANumber:
+            wanted = text
+        if name not in ("description", *_OF_NO_CONSEQUENCE) and not same(held, wanted):
+            return f"{name} = {held}, not {text}"
+    return None
+
+
+_OF_NO_CONSEQUENCE = [name for name, column in RunParameters.columns().items() if not column.of_consequence]
+
+
+def _goes_on(row):
+    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, which is longer in the row."""
+    run = run_of(row.out) if row.kind and checkpoint.exists(row.out) else None
+    if not run:
+        return False
+    found = [difference(row.kind, row.parameters, run, but) for but in ((), ("duration",))]
+    return found[0] is not None and found[1] is None
+
+
+def _stopped(folder, run):
+    """(what to say of a run that didn't come to its end, how far its checkpoint is)."""
+    if not run:
+        return "", 0.0
+    if not checkpoint.exists(folder):
+        return ("starts again", 0.0) if run.get("outcome") in ("running", "interrupted") else ("", 0.0)
+    try:
+        rows = checkpoint.Checkpoint(folder).rows
+    except checkpoint.CheckpointError:
+        return "", 0.0
+    reached = rows[-1][0] / end_time(run) if len(rows) else 0.0
+    return f"checkpoint at {100 * reached:.0f} %", reached
+
+
+def undecided(rows, states):
+    """'; 3 undecided (...)' of rows whose runs have ended with their outcome open, and so with a checkpoint; or ''."""
+    found = [row for row, state in zip(rows, states) if state.kind == DONE and checkpoint.exists(row.out)]
+    if not found:
+        return ""
+    return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
+
+
+# The log of a row's run: all that it printed, and how it ended, in the words of yade-batch.
+
+
+def summary(status):
+    """What a log ends with; nothing for a run that was stopped, which has not failed. status: of the run, as a shell has it."""
+    return "" if status in STOPPED else f"\nJOB SUMMARY\nstatus  : {status << 8} ({'FAILED' if status else 'OK'})\n"
+
+
+def failure(log, folder):
+    """Why the run of a log and a run folder (paths) failed, in one line; None when it did not, was stopped, or is under way."""
+    try:
+        with open(log, errors="replace") as file:
+            text, _, end = file.read().partition("JOB SUMMARY")
+    except OSError:
+        return None
+    status = re.search(r"^status  : (\d+)", end, re.MULTILINE)
+    if not status:
+        return None
+    code = int(status.group(1)) >> 8
+    if code > 128 and code not in STOPPED:
+        return f"killed by signal {code - 128}"
+    outcome = outcome_in(text)
+    if outcome is None:
+        message = re.findall(r"^[\w.-]+\.py: .*$", text, re.MULTILINE)
+        return message[-1] if message else "the script did not come to its end"
+    return None if outcome == "completed" else f"{folder}: {outcome}"

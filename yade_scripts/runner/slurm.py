@@ -1,42 +1,50 @@
 """A study as job arrays of Slurm: a task for each row that is left, or for several short ones.
 
-Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, of which task k of T has the
-k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T; k.out, what a task printed. The logs
-of the runs are where a local runner has them.
+Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, of which task k of T has
+the k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T; k.out, what a task
+printed. The logs of the runs are where a local runner has them. A task is run by Slurm:
+
+    python3 slurm.py ROWS.table NUMBER TASKS      every row of that number, counted from 1, then each TASKS further on
+
+A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1, which Slurm
+sends before the time limit, has the run write its checkpoint; if a run has come further in this task, the task is put into the
+queue again. Exit status: 0 when all runs have ended, that of the last one that failed, 1 when one can't be run, 128 and more
+when it was stopped.
 """
 
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
+import time
+from contextlib import suppress
 from itertools import groupby
 from math import ceil
+from multiprocessing.connection import wait
 
-from analysis.printable import shell_line
-from analysis.runs.files import RunFolderError, remove_unfinished, write_file
-from analysis.runs.running import states_of_job, why_unknown
-from yade_scripts.run.file_name import file_name
+if __name__ == "__main__":
+    sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+
+from analysis.printable import printable, shell_line
+from analysis.runs.files import RunFolderError, write_file
+from analysis.runs.lock import states_of_job, this_job, why_unknown
+from yade_scripts.parameters.errors import one_line_errors, tell
+from yade_scripts.run.parameters import file_name
 from yade_scripts.run.table import read
+from yade_scripts.runner import rows
+from yade_scripts.runner.batch import Worker
 from yade_scripts.runner.cost import typical_seconds
-from yade_scripts.runner.rows import write
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 
-TASK_SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "slurm_task.py")
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
 BEFORE_THE_LIMIT = 60  # s
 LARGEST = 1000  # tasks of an array, by Slurm's default MaxArraySize
 SHORT, TASK = 60, 600  # s that a row may take to share a task with others, and that these take together, roughly
-OVER = (
-    "COMPLETED",
-    "CANCELLED",
-    "FAILED",
-    "TIMEOUT",
-    "NODE_FAIL",
-    "BOOT_FAIL",
-    "DEADLINE",
-    "OUT_OF_MEMORY",
-    "PREEMPTED",
-)
+OVER = "COMPLETED CANCELLED FAILED TIMEOUT NODE_FAIL BOOT_FAIL DEADLINE OUT_OF_MEMORY PREEMPTED".split()
+POLL = 0.1  # s
+ALL_SIGNALLED = 2.0  # s in which Slurm's SIGTERM to all processes of a job has reached the run
 _FOLDER = re.compile(r"slurm-(\d+)")
 
 
@@ -44,10 +52,10 @@ class SlurmError(Exception):
     """What Slurm refused, or what a job can't be made of; the message is one line."""
 
 
-def arrays(rows):
-    """[([row, ...], number of tasks), ...]: rows that take as many processors each make an array of at most LARGEST tasks."""
+def arrays(left):
+    """[([row, ...], number of tasks), ...] of rows that are left: those that take as many processors each make an array of at most LARGEST tasks."""
     found = []
-    for (_, short), group in groupby(sorted(rows, key=_uniform), key=_uniform):
+    for (_, short), group in groupby(sorted(left, key=_uniform), key=_uniform):
         group = list(group)
         tasks = ceil(sum(map(typical_seconds, group)) / TASK) if short else len(group)
         number = ceil(tasks / LARGEST)
@@ -59,17 +67,17 @@ def _uniform(row):
     return row.threads, typical_seconds(row) < SHORT
 
 
-def job_script(study_folder, folder, rows, tasks, at_once=None):
+def job_script(study_folder, folder, group, tasks, at_once=None):
     """Text of the script of an array of so many tasks, of rows that take as many processors each.
 
     study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm likes).
     """
     name = os.path.basename(study_folder.path)
-    task = shlex.join([sys.executable, TASK_SCRIPT, os.path.join(folder, ROWS)])
+    task = shlex.join([sys.executable, os.path.abspath(__file__), os.path.join(folder, ROWS)])
     return f"""#!/bin/sh
 #SBATCH --job-name={name}
 #SBATCH --array=1-{tasks}{f"%{at_once}" if at_once else ""}
-#SBATCH --cpus-per-task={rows[0].threads}
+#SBATCH --cpus-per-task={group[0].threads}
 #SBATCH --signal=B:USR1@{BEFORE_THE_LIMIT}
 #SBATCH --requeue
 #SBATCH --open-mode=append
@@ -85,11 +93,9 @@ def require_usable(study_folder):
         raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
 
 
-def submit(study_folder, rows, at_once=None, options=()):
+def submit(study_folder, left, at_once=None, options=()):
     """Submit rows; yields (Slurm's number of a job, its rows, how many tasks they are). options: of sbatch. Raises SlurmError and OSError."""
-    for number in _numbers(study_folder):  # of calls that were killed
-        remove_unfinished(study_folder.file(f"slurm-{number}"))
-    for group, tasks in arrays(rows):
+    for group, tasks in arrays(left):
         study_folder.remove_logs(group)
         yield _submit(study_folder, group, tasks, at_once, options), group, tasks
 
@@ -117,19 +123,19 @@ def queued(study_folder, sure=False):
     return found
 
 
-def scripts(study_folder, rows, at_once=None, options=()):
+def scripts(study_folder, left, at_once=None, options=()):
     """Texts of what submit() would submit, each with the command as a comment."""
-    first, groups = _next_number(study_folder), arrays(rows)
+    first, groups = _next_number(study_folder), arrays(left)
     folders = [study_folder.file(f"slurm-{number}") for number in range(first, first + len(groups))]
     texts = (job_script(study_folder, folder, *group, at_once) for folder, group in zip(folders, groups))
     return [f"{text}# {shell_line(_command(folder, options))}\n" for text, folder in zip(texts, folders)]
 
 
-def _submit(study_folder, rows, tasks, at_once, options):
+def _submit(study_folder, group, tasks, at_once, options):
     folder = study_folder.file(f"slurm-{_next_number(study_folder)}")
     os.makedirs(folder)
-    write(os.path.join(folder, ROWS), rows)
-    write_file(os.path.join(folder, SCRIPT), job_script(study_folder, folder, rows, tasks, at_once))
+    rows.write(os.path.join(folder, ROWS), group)
+    write_file(os.path.join(folder, SCRIPT), job_script(study_folder, folder, group, tasks, at_once))
     try:
         done = subprocess.run(_command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except FileNotFoundError:
@@ -155,3 +161,100 @@ def _numbers(study_folder):
     except FileNotFoundError:
         return []
     return sorted(int(found.group(1)) for found in map(_FOLDER.fullmatch, names) if found)
+
+
+# What Slurm runs.
+
+
+def main(arguments):
+    path, number, tasks = arguments[0], int(arguments[1]), int(arguments[2])
+    with one_line_errors("slurm.py"):
+        own = rows.read(path)[number - 1 :: tasks]
+    logs, task = os.path.dirname(os.path.dirname(path)), Task()
+    status = 0
+    for row in own:
+        status = task.run(row, os.path.join(logs, f"{row.name}.log")) or status
+    if task.limit_is_near and task.came_further and task.left:
+        _queue_again()
+    return status
+
+
+class Task:
+    """Runs rows; notes the signals that this process has had, whether there is something .left, and whether it .came_further."""
+
+    def __init__(self):
+        self.limit_is_near = self.came_further = self.left = False
+        self._worker = self._since = None
+        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, self._note)
+
+    def run(self, row, log):
+        """Run a row unless it has ended, must not be run, or a signal has come; the exit status."""
+        if self._since is not None:
+            self.left = True
+            return 0
+        refused, before = rows.refusal(row), rows.state(row, log)
+        if before.kind == DONE:
+            print(f"{row.name}: has ended before", flush=True)
+            return 0
+        if before.kind == RUNNING:
+            return _refuse(row, f"is running on {before.host}")
+        if refused:
+            return _refuse(row, refused)
+        status, after = self._run(row, log), rows.state(row, log)
+        self.came_further |= after.progress > before.progress
+        self.left |= after.kind == WAITING
+        if after.kind == FAILED:
+            return _refuse(row, after.note, status)
+        print(printable(f"{row.name}: {after.kind} {after.note}".rstrip()), flush=True)
+        return status or int(after.kind != DONE)
+
+    def _run(self, row, log):
+        with suppress(FileNotFoundError):
+            os.remove(log)  # of a run before the task was queued again
+        if not self._worker or not self._worker.is_alive():
+            self._worker = Worker(log)
+        self._worker.begin(row, log)
+        while (status := self._worker.poll()) is None:
+            wait([self._worker.connection], POLL)
+            self._pass_on()
+        return status
+
+    def _note(self, number, _frame):
+        self.limit_is_near |= number == signal.SIGUSR1
+        self._since = self._since or time.monotonic()
+
+    def _pass_on(self):
+        """SIGTERM to the run, once: a second one would end it without its checkpoint. SIGUSR1 comes to this process alone,
+        others as a rule to all of the job: then the run handles them no more."""
+        delay = 0.0 if self.limit_is_near else ALL_SIGNALLED
+        if self._since is not None and time.monotonic() > self._since + delay:
+            handles = _handles(self._worker.run, signal.SIGTERM)
+            if handles:
+                self._worker.stop()
+            if handles or not self.limit_is_near:  # otherwise it hasn't begun to handle them
+                self._since = float("inf")
+
+
+def _handles(pid, number):
+    """Whether a process has a handler for a signal, so that it hasn't had it yet (run.stop_signals)."""
+    try:
+        with open(f"/proc/{pid}/status") as lines:
+            caught = next(int(line.split()[1], 16) for line in lines if line.startswith("SigCgt"))
+    except (OSError, StopIteration):
+        return False
+    return bool(caught >> (number - 1) & 1)
+
+
+def _queue_again():
+    """The time limit is near: Slurm begins this task anew, which resumes from the checkpoint."""
+    subprocess.run(["scontrol", "requeue", this_job()[0]], check=False)  # says itself why not
+
+
+def _refuse(row, reason, status=0):
+    tell(f"{row.name}: {reason}", "slurm.py")
+    return status or 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -20,8 +20,7 @@ from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.run.parameters import CORES
-from yade_scripts.runner.screen import SHARE
-from yade_scripts.runner.study import Study
+from yade_scripts.runner.study import SHARE, Study
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 STUDY = os.path.join(TOP, "study.py")
@@ -90,9 +89,7 @@ def _rows(kind, script, parameters, folder):
         out = os.path.basename(kind.parse(cells).out)
         if out in rows:
             given = " ".join(map("=".join, cells.items()))
-            raise ParameterError(
-                f"{given}: has the run folder {out} of another; must be told from it by the first four digits"
-            )
+            raise ParameterError(f"{given}: given twice (run folder {out}); must be given once")
         place = {"out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
         rows[out] = {"description": out, **cells, **place}
     return list(rows.values())
@@ -129,8 +126,7 @@ def _text(name, value):
 def _run(file, jobs):
     """Have study.py run a table; RunsFailed unless all its runs have ended."""
     command = [sys.executable, STUDY, file, "-j", str(jobs)]
-    of_table = Study(file, jobs, run_scripts=True)
-    of_table.forget_failures()
+    of_table = Study(file, jobs)
     with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as errors:
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
         study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)

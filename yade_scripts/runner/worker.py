@@ -1,4 +1,4 @@
-"""Runs rows of studies one after another, for workers.Worker, which starts it:
+"""Runs rows of studies one after another, for batch.Worker, which starts it:
 
     yade -n -x worker.py NUMBER       the number of a file descriptor, one end of a multiprocessing.Pipe
 
@@ -23,11 +23,9 @@ LOADED = (
     "yade_scripts.experiments.collision",
     "yade_scripts.experiments.compression",
     "yade_scripts.packings.ballistic_hits",
-    "yade_scripts.run.checkpoint_writer",
-    "yade_scripts.run.recorder",
+    "yade_scripts.run.folder",
     "yade_scripts.run.report",
     "yade_scripts.run.scene",
-    "yade_scripts.run.schedule",
     "yade_scripts.run.script",
     "multiprocessing.synchronize",
 )
