@@ -3,36 +3,28 @@
     python3 contact_law/installation.py install PREFIX       (after make)
     python3 contact_law/installation.py uninstall PREFIX
 
-PREFIX/lib/contact_law holds the packages contact_law, analysis and yade_scripts with their tables, and the plugin in
-an overlay that YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes every Python 3 of the
-system find the packages whose folders of modules lie in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
-PREFIX/lib/contact_law/installed.json lists every file with its SHA-256: these go again, where they still are what was
-installed, and no others. Links are not followed. What a call that was killed has left, the next one removes.
+PREFIX/lib/contact_law holds the packages contact_law, analysis and yade_scripts, and the plugin in an overlay that
+YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes every Python 3 of the system find the
+packages whose folders of modules lie in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
+PREFIX/lib/contact_law/installed.json lists all files, before the first is there: these go again, and no others.
 Exit status: 0, or 2 with one line on stderr.
 """
 
-import fcntl
 import glob
-import hashlib
 import json
 import os
 import re
-import secrets
 import shutil
 import subprocess
 import sys
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP))
 from analysis.printable import printable, printable_lines, shell_line
-from analysis.runs.files import remove_unfinished, write_file
 from analysis.version import commit, version_text
 
-FOLDER, LIST, PATH_FILE = "lib/contact_law", "installed.json", "contact_law.pth"
-TEMPORARY = ".contact_law.{}.unfinished"  # folders beside FOLDER
-COMMIT_FILE = "analysis/COMMIT"
+FOLDER, LIST = "lib/contact_law", "installed.json"
 COPIED = {
     "contact_law": ("*.py",),
     "analysis": (
@@ -70,23 +62,32 @@ def install(prefix):
     folder, paths = prefix / FOLDER, module_folders(prefix)
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
-    beside = {**_commands(prefix / "bin", folder), **{path / PATH_FILE: f"{folder}\n" for path in paths}}
-    for part in (folder, *beside):
-        if not _is_within(prefix, part):
-            raise CannotInstall(f"{part.parent}: leads out of {prefix}; must be within")
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    with _alone(prefix):
-        _require_free(prefix, beside)
-        with _temporary(prefix) as temporary:
-            new = temporary / FOLDER
-            _fill(new, {str(path.relative_to(prefix)): _sha256(text.encode()) for path, text in beside.items()})
-            if folder.exists():
-                _remove(prefix, _listed(prefix))
-            new.rename(folder)
-        for path, text in beside.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_file(path, text)
-            path.chmod(0o755 if path.name in COMMANDS else 0o644)
+    copied = {folder / name: TOP / name for name in _plan()}
+    written = {path / "contact_law.pth": f"{folder}\n" for path in paths}
+    for name, line in COMMANDS.items():
+        written[prefix / "bin" / name] = f'#!/bin/sh\n{line.format(folder=shell_line([folder]))} "$@"\n'
+    written[folder / "analysis/COMMIT"] = commit() + "\n"
+
+    earlier = _listed(prefix) if os.path.lexists(folder) else []
+    for path in (*copied, *written):
+        if not _is_within(prefix, path):
+            raise CannotInstall(f"{path.parent}: leads out of {prefix}; must be within")
+        if os.path.lexists(path) and path not in earlier:
+            raise CannotInstall(f"{path}: exists and is not part of an installation of contact_law; must be moved away")
+    if earlier:
+        uninstall(prefix)
+    folder.mkdir(parents=True, exist_ok=True)
+    names = sorted(str(path.relative_to(prefix)) for path in (*copied, *written))
+    (folder / LIST).write_text(json.dumps(names, indent=0) + "\n")
+    for path, source in copied.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, path, follow_symlinks=False)
+    for path, text in written.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        if path.name in COMMANDS:
+            path.chmod(0o755)
+
     lines = [
         f"contact_law {version_text()} is installed in {folder}",
         f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}",
@@ -99,142 +100,41 @@ def install(prefix):
 
 
 def uninstall(prefix):
-    """Remove what install() made there; returns the lines that say so, and what was left."""
-    with _alone(prefix):
-        left = _remove(prefix, _listed(prefix))
-    return [f"contact_law is removed from {prefix}", *left]
-
-
-def _remove(prefix, listed, whole=True):
-    """Remove listed files and the folders that are empty then; a line for each that is left. whole: only those that are what was
-    installed."""
-    folder, left = prefix / FOLDER, []
-    for path, digest in listed.items():
-        if _is_as_installed(prefix, path, digest) or not whole and _is_within(prefix, path) and path.is_file():
-            path.unlink()
-        elif os.path.lexists(path):
-            left.append(f"{path}: is not what was installed in {prefix}; is left there")
-    for path in {cache for path in listed if _is_within(prefix, path) for cache in _caches(path)}:
-        path.unlink()
-    ours = {path.parent for path in listed} | {path.parent / "__pycache__" for path in listed} | {folder}
-    for path in ours:
-        if _is_within(prefix, path / LIST):
-            remove_unfinished(path)
-    (folder / LIST).unlink()
-    for path in sorted(ours, key=lambda path: len(path.parts), reverse=True):
-        _remove_empty(path, prefix)
-    return left
-
-
-@contextmanager
-def _alone(prefix):
-    """Once nobody else installs or removes anything in the prefix; what killed calls have left there is gone then."""
-    folder = (prefix / FOLDER).parent
-    if not folder.is_dir():
-        raise CannotInstall(f"{prefix / FOLDER}: no installation there")
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        with suppress(OSError):  # of a file system without locks
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        for left in folder.glob(TEMPORARY.format("*")):
-            _remove_temporary(left)
-        _remove_empty_below(prefix / FOLDER)  # uninstall was killed among its last calls
-        yield
-    finally:
-        os.close(handle)
-
-
-@contextmanager
-def _temporary(prefix):
-    """A folder beside the installation's place, which goes again, for an installation that takes this place when it is whole."""
-    made = (prefix / FOLDER).parent / TEMPORARY.format(
-        secrets.token_hex(4)
-    )  # a name that runs.files.is_unfinished() knows
-    made.mkdir(0o700)
-    try:
-        yield made
-    finally:
-        _remove_temporary(made)
-
-
-def _remove_temporary(folder):
-    """Remove what _fill() has listed, and nothing else."""
-    if folder.is_symlink():
-        return
-    with suppress(CannotInstall):  # killed before there was a list
-        _remove(folder, _listed(folder), whole=False)
-    remove_unfinished(folder / FOLDER)
-    _remove_empty_below(folder)
-
-
-def _remove_empty_below(folder):
-    """Remove the folder and those in it, if there is nothing else in it."""
-    if not folder.is_symlink() and not any(_files(folder)):
-        for at, *_ in os.walk(folder, topdown=False):
-            os.rmdir(at)
-
-
-def _require_free(prefix, beside):
-    """CannotInstall where something is in the way that is not part of an earlier installation. beside: paths that are written
-    outside of its folder."""
-    folder = prefix / FOLDER
-    listed = _listed(prefix) if os.path.lexists(folder) else {}
-    own = {path for path, digest in listed.items() if _is_as_installed(prefix, path, digest)}
-    own |= {cache for path in own for cache in _caches(path)} | {folder / LIST}
-    for path in (*_files(folder), *filter(os.path.lexists, beside)):
-        if path not in own:
-            raise CannotInstall(f"{path}: exists and is not part of an installation of contact_law; must be moved away")
+    """Remove what install() has put there, what Python has made of it, and the folders that are empty then."""
+    listed = [path for path in _listed(prefix) if _is_within(prefix, path)]
+    for path in listed:
+        path.unlink(missing_ok=True)
+        for cache in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
+            if _is_within(prefix, cache):
+                cache.unlink()
+    (prefix / FOLDER / LIST).unlink()
+    for folder in sorted(
+        {parent for path in listed for parent in (path.parent / "__pycache__", *path.parents)}, reverse=True
+    ):
+        if prefix in folder.parents and _is_within(prefix, folder) and folder.is_dir() and not any(folder.iterdir()):
+            folder.rmdir()
+    return [f"contact_law is removed from {prefix}"]
 
 
 def _listed(prefix):
-    """{path: digest} of what was installed in the prefix. CannotInstall where there is no list, or another one."""
+    """The paths that were installed in the prefix. CannotInstall without a list of them."""
     file = prefix / FOLDER / LIST
-    if not _is_within(prefix, file) or not os.path.lexists(file.parent):
+    if not os.path.lexists(file.parent):
         raise CannotInstall(f"{file.parent}: no installation there")
     try:
-        listed = {prefix / path: digest for path, digest in json.loads(file.read_text())}
-        if not listed:
+        if not _is_within(prefix, file):
             raise ValueError
-    except (OSError, ValueError, TypeError):
-        raise CannotInstall(
-            f"{file}: is no list of files with their SHA-256; {file.parent} must be moved away (and what an earlier version has put "
-            f"into {prefix / 'bin'})"
-        ) from None
-    return listed
-
-
-def _is_as_installed(prefix, path, digest):
-    return _is_within(prefix, path) and _digest(path) == digest
+        listed = json.loads(file.read_text())
+        return [
+            prefix / (entry if isinstance(entry, str) else entry[0]) for entry in listed
+        ]  # up to 0.6 each with a sum
+    except (OSError, ValueError, TypeError, LookupError):
+        raise CannotInstall(f"{file}: is no list of installed files; {file.parent} must be moved away") from None
 
 
 def _is_within(prefix, path):
-    """Whether a path leads to the prefix, not through a link out of it."""
+    """Whether a path leads to the prefix, not through .. or a link out of it."""
     return Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(prefix)) and path.name not in ("", "..")
-
-
-def _digest(path):
-    """SHA-256 of a file, where a link leads; None for anything else."""
-    if path.is_symlink():
-        return f"link to {os.readlink(path)}"
-    return _sha256(path.read_bytes()) if path.is_file() else None
-
-
-def _sha256(content):
-    return hashlib.sha256(content).hexdigest()
-
-
-def _files(folder):
-    """Paths of everything below a folder but folders; links are not followed."""
-    for at, folders, files in os.walk(folder):
-        yield from (Path(at) / name for name in files)
-        yield from (path for name in folders if (path := Path(at) / name).is_symlink())
-
-
-def _caches(path):
-    """Files that Python has made of a module."""
-    folder = path.parent / "__pycache__"
-    found = folder.glob(f"{path.stem}.*") if path.suffix == ".py" and not folder.is_symlink() else ()
-    return [file for file in found if file.is_file() and not file.is_symlink()]
 
 
 def module_folders(prefix):
@@ -257,46 +157,15 @@ def _pythons():
     return sorted(file for file in files if os.access(file, os.X_OK))
 
 
-def _commands(folder, target):
-    """{path: text} of the commands in a folder, of an installation in `target`."""
-    return {
-        folder / name: f'#!/bin/sh\n{line.format(folder=shell_line([target]))} "$@"\n'
-        for name, line in COMMANDS.items()
-    }
-
-
-def _fill(new, beside):
-    """Make an installation in the folder `new`, its list first. beside: {path: digest} of files outside of it."""
-    plan, told = _plan(), commit() + "\n"
-    listed = {f"{FOLDER}/{name}": _digest(file) for name, file in plan.items()}
-    listed |= {f"{FOLDER}/{COMMIT_FILE}": _sha256(told.encode()), **beside}
-    new.mkdir(parents=True)
-    write_file(new / LIST, json.dumps(sorted(listed.items()), indent=0) + "\n")
-    for name, file in plan.items():
-        (new / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(file, new / name, follow_symlinks=False)
-    write_file(new / COMMIT_FILE, told)
-    for at, _, names in os.walk(new):  # for all users, whatever the umask is
-        os.chmod(at, 0o755)
-        for file in (Path(at) / name for name in names):
-            if not file.is_symlink():
-                file.chmod(0o755 if file.stat().st_mode & 0o100 else 0o644)
-
-
 def _plan():
-    """{path in the installation: file or link that is copied there}."""
+    """Paths from the checkout's top of what is copied: files, and links to YADE's own files."""
     files = [file for package, patterns in COPIED.items() for each in patterns for file in (TOP / package).glob(each)]
     files += [TOP / "build" / name for name in ("yade.list", "commit.list")]
-    for part in ("lib", "bin"):  # links to YADE's own files, and the plugin
-        files += _files(TOP / "build" / part)
-    return {str(file.relative_to(TOP)): file for file in files}
-
-
-def _remove_empty(folder, prefix):
-    """The folder and those above it, up to the prefix, as far as they are empty."""
-    while prefix in folder.parents and _is_within(prefix, folder) and folder.is_dir() and not any(folder.iterdir()):
-        folder.rmdir()
-        folder = folder.parent
+    for part in ("lib", "bin"):
+        for at, folders, names in os.walk(TOP / "build" / part):
+            files += [Path(at) / name for name in names]
+            files += [Path(at) / name for name in folders if (Path(at) / name).is_symlink()]
+    return [str(file.relative_to(TOP)) for file in files]
 
 
 def main(arguments):
@@ -304,11 +173,12 @@ def main(arguments):
         print(__doc__)
         return 2
     action, prefix = arguments[0], Path(os.path.abspath(os.path.expanduser(arguments[1])))
+    os.umask(0o022)  # all users may read an installation
     try:
-        if not arguments[1] or arguments[1].startswith("~") and str(prefix).startswith(os.path.abspath("~")):
-            raise CannotInstall(f"PREFIX = {arguments[1]!r}: must be a folder")
-        if not str(prefix).isprintable() or os.pathsep in str(prefix):
-            raise CannotInstall(f"{prefix}: must be of printable characters, without '{os.pathsep}'")
+        if not arguments[1] or not arguments[1].isprintable() or os.pathsep in arguments[1]:
+            raise CannotInstall(
+                f"PREFIX = {arguments[1]!r}: must be a folder, of printable characters and without '{os.pathsep}'"
+            )
         print(printable_lines("\n".join({"install": install, "uninstall": uninstall}[action](prefix))))
     except CannotInstall as error:
         print(printable(f"make {action}: {error}"), file=sys.stderr)

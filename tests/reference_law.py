@@ -1,14 +1,16 @@
 """The contact law of contact_law/MODEL.md once more, in plain Python, to be read beside the papers.
 
-It shares nothing with the plugin or the analysis, and is slow. tests/equivalence/test_reference_law.py holds functors and
-engine to it. A22, A24: Arakawa et al. 2022, 2024; K13: Kataoka et al. 2013; S17: Sirono & Ueno 2017; W07: Wada et al. 2007.
+It shares nothing with the plugin, has its constants from analysis.theory, and is slow. tests/equivalence/test_reference_law.py
+holds functors and engine to it. A22, A24: Arakawa et al. 2022, 2024; K13: Kataoka et al. 2013; S17: Sirono & Ueno 2017; W07: Wada et al. 2007.
 SI units; vectors are arrays (3,). Of a contact: grains 1 and 2, n the unit vector from 2 to 1, delta the overlap.
 """
 
-from math import asin, pi, sqrt
+from math import pi, sqrt
 from types import SimpleNamespace
 
 import numpy as np
+
+from analysis import theory
 
 MODES = ("normal", "sliding", "rolling", "twisting")
 LOST = tuple(f"{mode}Dissipation" for mode in MODES[1:]) + ("connection", "disconnection", "drag", "bondBreaking")
@@ -27,65 +29,43 @@ def turned(v, angle):
     return v + np.sin(size) * cross(axis, v) + 2 * np.sin(size / 2) ** 2 * cross(axis, cross(axis, v))
 
 
-# ---- constants (MODEL.md, "Pair constants" and "Sintered bonds"); m: young, poisson, density, surfaceEnergy, ... ----
+# ---- constants and normal motion, from analysis.theory; m: young, poisson, density, surfaceEnergy, ... ----
+
+
+def material(m, density=1.0):
+    """m as the theory has it, with its density times a factor."""
+    return theory.Material(
+        m.young, m.poisson, density * m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime
+    )
 
 
 def pair(m1, r1, m2, r2, damping, beta, sliding_factor=1):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
-    s = shrunk_radius(beta)
-    r1, r2, mass1, mass2 = s * r1, s * r2, *(4 / 3 * pi * m.density * r**3 for m, r in ((m1, r1), (m2, r2)))
-    G1, G2 = (m.young / (2 * (1 + m.poisson)) for m in (m1, m2))
-    E = 1 / sum((1 - m.poisson**2) / m.young for m in (m1, m2))
-    G, G_twist = 1 / ((2 - m1.poisson) / G1 + (2 - m2.poisson) / G2), 1 / (1 / G1 + 1 / G2)
-    gamma, R, m_star = sqrt(m1.surfaceEnergy * m2.surfaceEnergy), r1 * r2 / (r1 + r2), mass1 * mass2 / (mass1 + mass2)
-    a0 = (9 * pi * gamma * R**2 / E) ** (1 / 3)  # A22 (1)
-    c = SimpleNamespace(r1=r1, r2=r2, R=R, a0=a0, d0=a0**2 / (3 * R), Fc=3 * pi * gamma * R)  # A22 (2), (6)
-    c.dc = (9 / 16) ** (1 / 3) * c.d0  # A22 (3)
-    c.kr, c.kt = 4 * c.Fc / R, 16 / 3 * G_twist * a0**3  # A22 (14), (23)
-    c.ks = sliding_factor * 8 * a0 * G  # A22 (18); 2: S17 (11) and (12)
-    c.zeta_crit, c.phi_crit = G_twist / G * a0 / (16 * pi), 1 / (16 * pi)  # A22 (19), (24)
-    c.xi_crit = (m1.criticalRolling + m2.criticalRolling) / 2
-    c.viscous = sum(m.viscoelasticTime / m.poisson**2 for m in (m1, m2)) * E  # A22 (7): 2 A E*
-    rho = 2 * m_star / (4 / 3 * pi * (2 * R) ** 3)
-    t0 = 0.95 * sqrt(rho) * (2 * R) ** (7 / 6) / (E ** (1 / 3) * gamma ** (1 / 6))  # K13 (2) with E*
-    c.damping = damping * 2 * m_star / t0  # K13 (4)
-    return c
-
-
-def shrunk_radius(beta):
-    """R'/R_g, by the volume between fillet and spheres of two necks (S17 section 3.3)."""
-    if beta == 0:
-        return 1.0
-    x = beta**2 / (2 * (1 - beta))  # S17 (1); the fillet is a circle of radius x about the distance c from the axis
-    h, c = x / (1 + x), beta + x  # half the length d, S17 (2)
-    fillet = 2 * pi * (h * c**2 - c * (h * sqrt(x**2 - h**2) + x**2 * asin(h / x)) + x**2 * h - h**3 / 3)
-    return (1 - 2 * (fillet - 2 * pi * h**2 * (1 - h / 3)) / (4 / 3 * pi)) ** (1 / 3)
+    s = theory.shrunk_radius(beta)
+    grains = material(m1, s**-3), s * r1, material(m2, s**-3), s * r2
+    c = theory.pair_constants(*grains, damping, sliding_factor)
+    of_springs = dict(r1=s * r1, r2=s * r2, R=c.reduced_radius)
+    of_springs |= dict(ks=c.sliding_stiffness, kr=c.rolling_stiffness, kt=c.twisting_stiffness)
+    limits = dict(zeta_crit=c.critical_sliding, xi_crit=c.critical_rolling, phi_crit=c.critical_twisting)
+    normal = dict(d0=c.equilibrium_overlap, dc=c.pull_off_overlap, Fc=c.pull_off_force)
+    drag = dict(viscous=c.drag_per_contact_radius, damping=c.linear_drag)
+    return SimpleNamespace(**of_springs, **limits, **normal, **drag, a0=c.equilibrium_contact_radius)
 
 
 def bond(m1, r1, m2, r2, beta):
     """Constants of a sintered bond of grains with radii r1, r2 before sintering."""
-    E, G = 2 / sum(1 / m.young for m in (m1, m2)), 2 / sum(2 * (1 + m.poisson) / m.young for m in (m1, m2))
-    R, x = r1 * r2 / (r1 + r2), beta**2 / (2 * (1 - beta))
-    a, d = beta * 2 * R, 2 * (2 * R) * x / (1 + x)  # S17 (2)
-    b = SimpleNamespace(r1=r1, r2=r2, R=R, kn=pi * a**2 * E / d, ks=pi * a**2 * G / d)  # S17 (3), (4)
-    b.kr, b.kt = pi * a**4 * E / (4 * d) / R**2, pi * a**4 * G / (2 * d)  # S17 (5), on xi; polar moment of the disk
-    b.breaking = pi * a**2 * sqrt(m1.surfaceEnergy * m2.surfaceEnergy)  # S17 (6)
-    return b
+    b = theory.bond_constants(material(m1), r1, beta, material(m2), r2)
+    of_springs = dict(r1=r1, r2=r2, R=r1 * r2 / (r1 + r2))
+    of_springs |= dict(ks=b.sliding_stiffness, kr=b.rolling_stiffness, kt=b.twisting_stiffness)
+    return SimpleNamespace(**of_springs, kn=b.normal_stiffness, breaking=b.breaking_energy)
 
-
-# ---- normal motion: JKR ----
 
 U_AT_CONNECTION, U_AT_PULL_OFF = -8 / 15 * 2 ** (2 / 3), 4 / 45  # A22 (9), (10), in F_c delta_c
 
 
 def jkr(c, delta):
-    """(contact radius, force, energy) from delta/delta0 = 3u^4 - 2u, u = (a/a0)^(1/2) >= 6^(-1/3) (A22 2, 5, 8), by Newton's method."""
-    least, u = 6 ** (-1 / 3), sqrt(2 + abs(delta) / c.d0)  # from above
-    for _ in range(100):
-        slope = 12 * u**3 - 2
-        u, before = max(least, u - (3 * u**4 - 2 * u - delta / c.d0) / slope) if slope > 0 else least, u
-        if abs(u - before) < 1e-16 * u:
-            break
+    """(contact radius, force, energy) at an overlap: A22 (2), (5), (8)."""
+    u = float(theory.contact_radius_root(delta / c.d0))
     energy = 4 * 6 ** (1 / 3) * (4 / 5 * u**10 - 4 / 3 * u**7 + u**4 / 3)
     return c.a0 * u**2, c.Fc * 4 * (u**6 - u**3), c.Fc * c.dc * energy
 

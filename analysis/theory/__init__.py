@@ -8,7 +8,7 @@ et al. 2013, S17 = Sirono & Ueno 2017 (sintered aggregates).
 """
 # ruff: noqa: F401, I001
 
-from .bonds import BondConstants, bond_constants
+from .bonds import BondConstants, bond_constants, shrunk_radius
 from .jkr import contact_radius, contact_radius_root, normal_energy, normal_force, normalised_energy, normalised_force
 from .pair_constants import GRAIN_RADIUS, ICE, MATERIALS, SILICATE, Material, PairConstants
 from .pair_constants import interaction_energies, pair_constants, time_unit

@@ -118,7 +118,7 @@ struct ForcePass : PairPass {
 	void (*events)(void* owner, int block, unsigned which, const ContactBlock& before, LaneForces& out);
 	// called behind each batch of blocks with its number, counted from firstBlock; null when nothing waits for it
 	void (*batchDone)(void* owner, int batch);
-	bool cut; // springs beyond their limits are events: cut, not returned to the limit (kernel/limit_rule.hpp), or after a script's move
+	bool cut; // springs beyond their limits are events: cut, not returned to the limit (kernel/limits.hpp), or after a script's move
 };
 
 // The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much kicks

@@ -1,6 +1,6 @@
 // A domain's sintered bonds of one ownership, in blocks of eight slots as ordinary contacts are.
 #pragma once
-#include "../kernel/bond_step.hpp"
+#include "../kernel/bond.hpp"
 #include "contact_list.hpp"
 
 namespace contact_law {

@@ -1,7 +1,7 @@
 // The pass over sintered bonds, for one pack type: included by each instruction set's file. One sweep, since a linear
 // bond needs little room.
 #pragma once
-#include "../kernel/turning.hpp"
+#include "../kernel/numbers.hpp"
 #include "bond_list.hpp"
 #include "pass_access.hpp"
 

@@ -99,8 +99,8 @@ template <class Archive> void transfer(Archive& archive, ContactHistory<double>&
 }
 template <class Archive> void transfer(Archive& archive, Dissipation& d)
 {
-	for (const auto& channel : lostChannels)
-		archive.number(d.*channel.member);
+	for (const auto member : lostMembers<double>)
+		archive.number(d.*member);
 }
 template <class Archive> void transfer(Archive& archive, PeriodicCell& cell)
 {

@@ -4,8 +4,8 @@
 // drag sees, the displacements before a slip, the booking of drag and slips.
 // tests/equivalence holds it to the functors and to tests/reference_law.py. Contacts that form or break go through contactStep() itself.
 #pragma once
-#include "../kernel/held.hpp"
-#include "../kernel/turning.hpp"
+#include "../kernel/limits.hpp"
+#include "../kernel/numbers.hpp"
 #include "pass_access.hpp"
 #include "several.hpp"
 
@@ -222,8 +222,8 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 			}
 			if (pass.batchDone) pass.batchDone(pass.owner, batch);
 		}
-		for (std::size_t k = 0; k < std::size(lostChannels); ++k)
-			pass.dissipated->*lostChannels[k].member += sumOf(lost.*lostChannelsOf<Pack>[k].member);
+		for (std::size_t k = 0; k < std::size(lostMembers<double>); ++k)
+			pass.dissipated->*lostMembers<double>[k] += sumOf(lost.*lostMembers<Pack>[k]);
 		if constexpr (periodic) crossing.addTo(*pass.crossing);
 	}
 

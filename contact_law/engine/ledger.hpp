@@ -12,14 +12,14 @@ struct EarlyKick {
 };
 
 struct Counts {
-	long events = 0;                            // contacts that formed, broke, and slips
-	long formed = 0, broken = 0;                // contacts, bonds not among them
-	std::array<long, bondModes> brokenBonds {}; // by mode
+	long events = 0;                                // contacts that formed, broke, and slips
+	long formed = 0, broken = 0;                    // contacts, bonds not among them
+	std::array<long, bondModeCount> brokenBonds {}; // by mode
 
 	Counts& operator+=(const Counts& c)
 	{
 		events += c.events, formed += c.formed, broken += c.broken;
-		for (int mode = 0; mode < bondModes; ++mode)
+		for (int mode = 0; mode < bondModeCount; ++mode)
 			brokenBonds[mode] += c.brokenBonds[mode];
 		return *this;
 	}

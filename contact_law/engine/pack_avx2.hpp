@@ -1,4 +1,4 @@
-// Four doubles in an AVX2 register, with what the kernel asks of a number type (kernel/number.hpp).
+// Four doubles in an AVX2 register, with what the kernel needs of a number type (kernel/numbers.hpp).
 #pragma once
 #include <immintrin.h>
 

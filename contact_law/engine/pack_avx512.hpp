@@ -1,4 +1,4 @@
-// Eight doubles in an AVX-512 register, with what the kernel asks of a number type (kernel/number.hpp).
+// Eight doubles in an AVX-512 register, with what the kernel needs of a number type (kernel/numbers.hpp).
 #pragma once
 #include <immintrin.h>
 

@@ -1,6 +1,6 @@
 // One double as a pack: the engine on a machine without AVX2.
 #pragma once
-#include "../kernel/number.hpp"
+#include "../kernel/numbers.hpp"
 
 namespace contact_law {
 namespace portable {

@@ -158,13 +158,13 @@ template <class Pack> struct PassAccess {
 		for (int lane = 0; lane < width; ++lane)
 			counts[lane] = block.i[at + lane] != dummy;
 		const Pack mine = Pack::load(counts);
-		for (const auto& row : storedChannelsOf<Pack>)
-			sum.*row.member = sum.*row.member + mine * (e.*row.member);
+		for (const auto member : storedMembers<Pack>)
+			sum.*member = sum.*member + mine * (e.*member);
 	}
 	static void sumLanes(const StoredEnergy<Pack>& from, StoredEnergy<double>& to)
 	{
-		for (std::size_t k = 0; k < std::size(storedChannels); ++k)
-			to.*storedChannels[k].member = sumOf(from.*storedChannelsOf<Pack>[k].member);
+		for (std::size_t k = 0; k < std::size(storedMembers<double>); ++k)
+			to.*storedMembers<double>[k] = sumOf(from.*storedMembers<Pack>[k]);
 	}
 };
 

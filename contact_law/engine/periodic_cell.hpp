@@ -1,7 +1,6 @@
 // A rectangular periodic cell along the axes, of changing size: nearest images, and what its moving boundaries do to the grains' energy.
 #pragma once
-#include "../kernel/number.hpp"
-#include "../kernel/vector3.hpp"
+#include "../kernel/numbers.hpp"
 
 namespace contact_law {
 

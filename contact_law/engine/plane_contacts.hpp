@@ -1,8 +1,8 @@
-/* The planes of a scene (half-spaces, kernel/plane_step.hpp) and a domain's grains on them. Few grains touch a plane: each of these contacts is a call of the kernel's
+/* The planes of a scene (half-spaces, kernel/contact_step.hpp) and a domain's grains on them. Few grains touch a plane: each of these contacts is a call of the kernel's
  * scalar law in each step, slips, formation and breaking included, as the functors make it. A plane concerns the domain that has the grain and no other; each domain
  * moves the planes on by itself, all by the same numbers. */
 #pragma once
-#include "../kernel/plane_step.hpp"
+#include "../kernel/contact_step.hpp"
 #include "ledger.hpp"
 
 namespace contact_law {

@@ -1,7 +1,7 @@
-// Several packs side by side as one number, with what the kernel asks of a number type (kernel/number.hpp): while one of them waits for a result,
+// Several packs side by side as one number, with what the kernel needs of a number type (kernel/numbers.hpp): while one of them waits for a result,
 // the others go on.
 #pragma once
-#include "../kernel/number.hpp"
+#include "../kernel/numbers.hpp"
 
 namespace contact_law {
 

@@ -1,7 +1,7 @@
 // Degrees of freedom along which a grain does not answer to forces: bits 1, 2, 4 for x, y, z and 8, 16, 32 for turning about them, as in
 // YADE's State.blockedDOFs.
 #pragma once
-#include "vector3.hpp"
+#include "numbers.hpp"
 #include <array>
 
 namespace contact_law {

@@ -1,8 +1,7 @@
 // What a contact is at one instant, and what moves it through a step: the types that all mechanisms share.
 #pragma once
 #include "energy_channels.hpp"
-#include "number.hpp"
-#include "vector3.hpp"
+#include "numbers.hpp"
 
 namespace contact_law {
 
@@ -16,6 +15,11 @@ enum Mechanism : unsigned {
 	Everything = AllSprings | Drag
 };
 constexpr int mechanismSets = Everything + 1; // combinations of mechanisms
+// The instances of a function template for all of them: for callers that know theirs at run time only.
+#define CONTACT_LAW_ALL_MECHANISMS(f)                                                                                                      \
+	{                                                                                                                                  \
+		f<0>, f<1>, f<2>, f<3>, f<4>, f<5>, f<6>, f<7>, f<8>, f<9>, f<10>, f<11>, f<12>, f<13>, f<14>, f<15>                       \
+	}
 
 constexpr unsigned mechanismsOf(bool sliding, bool rolling, bool twisting, bool drag)
 {

@@ -8,9 +8,7 @@
 #pragma once
 #include "cut.hpp"
 #include "events.hpp"
-#include "held.hpp"
-#include <array>
-#include <utility>
+#include "limits.hpp"
 
 namespace contact_law {
 
@@ -152,10 +150,39 @@ inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule l
 using ContactStep = ContactStepResult (*)(
         const PairConstants<double>&, LimitRule, const ContactMotion&, const ContactBefore&, ContactHistory<double>&);
 
-template <size_t... mechanisms> constexpr std::array<ContactStep, sizeof...(mechanisms)> contactSteps(std::index_sequence<mechanisms...>)
+constexpr ContactStep contactStepWith[mechanismSets] = CONTACT_LAW_ALL_MECHANISMS(contactStep);
+
+// ---- a grain and a plane ----
+
+/* A half-space of the plane's own material: the limit of contactStep() for an infinite second sphere, whose pointer is the plane's fixed normal.
+ * Planes rest, or move at a velocity that contacts don't change, and do not turn. MODEL.md, "Planes". */
+struct Plane {
+	Vec3<double> position, normal, velocity; // of any of its points; unit vector towards the grain
+	Vec3<double> across(const Vec3<double>& v) const { return v - dot(v, normal) * normal; }
+};
+
+// A grain's motion past a plane. What the plane's velocity does is not the grain's own motion: booked apart, as a periodic cell's boundaries.
+inline ContactMotion motionPast(const Plane& plane, const Vec3<double>& position, const Vec3<double>& velocity, const Vec3<double>& spin,
+        double dt, double inverseMass, double inverseInertia)
 {
-	return { &contactStep<unsigned(mechanisms)>... };
+	return { dot(position - plane.position, plane.normal) * plane.normal, velocity - plane.velocity, spin, { 0, 0, 0 }, dt, inverseMass,
+		-plane.velocity, inverseInertia, 0 };
 }
-constexpr auto contactStepWith = contactSteps(std::make_index_sequence<mechanismSets> {});
+
+/* As contactStep(), for a motion made by motionPast() and constants with an infinite radius2. `history.pointers` are those of this instant
+ * (of a contact that may form: n2 alone). Of the result, the force is the grain's (minus it: the plane's) and torque2 has no meaning. */
+template <unsigned mechanisms>
+inline ContactStepResult planeStep(
+        const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before, PlaneHistory<double>& history)
+{
+	const Vec3<double>& n = history.pointers.n2;
+	return contactStepAt<mechanisms>(c, limit, m, { n, 0, c.radius1 - dot(m.separation, n) }, before, history);
+}
+
+// planeStep by its mechanisms, for callers that know them at run time only.
+using PlaneStep = ContactStepResult (*)(
+        const PairConstants<double>&, LimitRule, const ContactMotion&, const ContactBefore&, PlaneHistory<double>&);
+
+constexpr PlaneStep planeStepWith[mechanismSets] = CONTACT_LAW_ALL_MECHANISMS(planeStep);
 
 } // namespace contact_law

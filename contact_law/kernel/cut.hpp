@@ -1,11 +1,11 @@
 // The rule of Sirono & Ueno (2017, "S17", section 3.2) for displacements beyond their limits: the spring is cut at the limit, what it stores
-// is lost, and a new one without strain takes its place at once. (The rule of Wada et al. 2007 is held.hpp.)
+// is lost, and a new one without strain takes its place at once. (The rule of Wada et al. 2007 is limits.hpp.)
 // A cut is an event inside the step, as formation and breaking are: the force jumps there, and the kick before this instant is the integral
 // of the springs' forces over the step less the half step that was given a step ago. MODEL.md, "Cut springs", derives each line.
 #pragma once
 #include "events.hpp"
-#include "limit_rule.hpp"
-#include "turning.hpp"
+#include "limits.hpp"
+#include "numbers.hpp"
 
 namespace contact_law {
 namespace cut {

@@ -3,7 +3,7 @@
 #pragma once
 #include "contact_state.hpp"
 #include "pair_constants.hpp"
-#include "turning.hpp"
+#include "numbers.hpp"
 
 namespace contact_law {
 namespace events {

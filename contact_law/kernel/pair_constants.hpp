@@ -1,7 +1,7 @@
 // What two materials and two radii make of a contact: derived once for each pair, and read by every step.
 // Symbols and sources: MODEL.md. A22 = Arakawa et al. 2022, K13 = Kataoka et al. 2013.
 #pragma once
-#include "cube_root.hpp"
+#include "numbers.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
 #include "JKRWada.hpp"
-#include "../kernel/bond_step.hpp"
+#include "../kernel/bond.hpp"
 #include "../kernel/blocked.hpp"
 #include "KernelVectors.hpp"
 #include "RunningLoop.hpp"
@@ -338,15 +338,20 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKR
 	scene->forces.addTorque(grain1, fromKernel(r.torque1));
 	if (!ofPlane) scene->forces.addTorque(other, fromKernel(r.torque2));
 	if (scene->trackEnergy) {
-		book(r);
+		channels.prepare(*scene, shapes.planes());
+		contact_law::Energies energies;
+		energies.kinetic = r.workBefore;
+		energies.stored = r.stored;
+		energies.dissipated = r.dissipated;
 		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
 		const Vector3r before =
 		        phys.touching ? (ofPlane ? 0.5 : -0.5) * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero());
 		const Real work = motion.dt * (before + fromKernel(r.forceBefore)).dot(fromKernel(motion.imageVelocity));
 		if (ofPlane)
-			channels.addConstraintWork(*scene, work);
+			energies.constraintWork = work;
 		else if (scene->isPeriodic)
-			channels.addBoundaryWork(*scene, work);
+			energies.boundaryWork = work;
+		channels.add(*scene, energies);
 	}
 	phys.touching = r.touching;
 	if (!r.touching) return false;
@@ -390,13 +395,6 @@ ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, c
 #pragma omp atomic
 	++*counters[r.mode];
 	return r.contact;
-}
-
-void Law2_ScGeom_JKRWadaPhys_JKRWada::book(const ContactStepResult& r)
-{
-	channels.prepare(*scene, shapes.planes());
-	channels.addKinetic(*scene, r.workBefore);
-	channels.add(*scene, r.stored, r.dissipated);
 }
 
 } // namespace yade

@@ -2,7 +2,7 @@
 // The formulas stand in ../kernel; MODEL.md lists them with their sources. These classes carry them into YADE.
 #pragma once
 #include "../kernel/bond.hpp"
-#include "../kernel/plane_step.hpp"
+#include "../kernel/contact_step.hpp"
 #include "EnergyChannels.hpp"
 #include "SceneShapes.hpp"
 #include <core/Interaction.hpp>
@@ -179,7 +179,6 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 
 	unsigned mechanismsOf(const contact_law::PairConstants<double>&) const;
 	bool stepIsBelow(Real unstable) const; // refuses the scene in this step if not
-	void book(const contact_law::ContactStepResult&);
 	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
 	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, unsigned mechanisms,
 	        const contact_law::ContactStepResult&);

@@ -341,11 +341,10 @@ boost::python::dict JKRWadaEngine::statistics() const
 	result["bonds"] = bondCount(dynamics);
 	const contact_law::Dissipation lost = dissipated(dynamics);
 	const contact_law::Counts counts = contact_law::counts(dynamics);
-	static const char* const modes[contact_law::bondModes] = { "brokenByStretching", "brokenBySliding", "brokenByRolling",
-		"brokenByTwisting" };
-	for (int mode = 0; mode < contact_law::bondModes; ++mode) {
-		result[modes[mode]] = counts.brokenBonds[mode];
-		result[modes[mode] + std::string("Energy")] = lost.*contact_law::bondBreakingBy[mode];
+	for (int mode = 0; mode < contact_law::bondModeCount; ++mode) {
+		const auto& [name, energy] = contact_law::bondModes[mode];
+		result[name] = counts.brokenBonds[mode];
+		result[std::string(name) + "Energy"] = lost.*energy;
 	}
 	result["domains"] = dynamics.parts().size();
 	result["contactUpdates"] = dynamics.counters().contactUpdates;

@@ -1,6 +1,6 @@
 // Vectors of YADE as the kernel's, and back.
 #pragma once
-#include "../kernel/vector3.hpp"
+#include "../kernel/numbers.hpp"
 #include <lib/base/Math.hpp>
 
 namespace yade {

@@ -21,7 +21,7 @@ public:
 		double lost = 0, sum = 0, scale = 0;
 		for (int channel = 0; channel < contact_law::channelCount; ++channel) {
 			sum += values[channel], scale += std::abs(values[channel]);
-			if (isLoss(channel)) lost += values[channel];
+			if (isLoss(contact_law::channels[channel])) lost += values[channel];
 		}
 		if (!std::isfinite(scale)) return "the energies are not finite";
 		scale = std::max(scale, negligible * contactEnergy);
@@ -39,11 +39,10 @@ public:
 private:
 	// Whether a channel's energy cannot come back. That of broken bonds does, where grains were sintered while they were pressed
 	// together (MODEL.md, "Sintering a running scene").
-	static bool isLoss(int channel)
+	static bool isLoss(const contact_law::Channel& channel)
 	{
-		return contact_law::channels[channel].kind == contact_law::ChannelKind::Lost && channel != bondBreaking;
+		return channel.kind == contact_law::ChannelKind::Lost && channel.name != std::string("bondBreaking");
 	}
-	static constexpr int bondBreaking = contact_law::channelNumber("bondBreaking");
 
 	// Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
 	static constexpr double lossRegained = 0.1, sumChanged = 0.5, negligible = 1e-9;

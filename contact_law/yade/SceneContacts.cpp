@@ -1,5 +1,5 @@
 #include "SceneContacts.hpp"
-#include "../kernel/turning.hpp"
+#include "../kernel/numbers.hpp"
 #include "KernelVectors.hpp"
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"

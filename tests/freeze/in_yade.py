@@ -8,16 +8,14 @@ here = os.path.dirname(os.path.abspath(sys.argv[0]))
 sys.path[:0] = [os.path.dirname(os.path.dirname(here)), os.path.dirname(here)]
 instructions, script = sys.argv[1:3]
 sys.argv = sys.argv[2:]
-from yade.wrapper import JKRWadaEngine
+import contact_law
 
-import contact_law  # noqa: F401
-
-made = JKRWadaEngine.__init__
+made = contact_law.JKRWadaEngine.__init__
 
 
 def of_this_set(self, *arguments, **options):
     made(self, *arguments, **{"instructions": instructions, **options})
 
 
-JKRWadaEngine.__init__ = of_this_set
+contact_law.JKRWadaEngine.__init__ = of_this_set
 runpy.run_path(script, init_globals=globals(), run_name="__main__")

@@ -1,5 +1,5 @@
 // The kernel's functions for Python (ctypes): plain arrays in, plain arrays out. Built by conftest.py.
-#include "../../contact_law/kernel/bond_step.hpp"
+#include "../../contact_law/kernel/bond.hpp"
 
 using namespace contact_law;
 
