@@ -90,10 +90,10 @@ OF_STRUCTURE = {
     "often as compressed ones of\ntheir filling",
 }
 AVERAGED = {
-    "axis": "",
     "impact": "averaged over impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2,",
-    "intervals": "",
     "near_impact": ",\nat any impact parameter",
+    "axis": "",
+    "intervals": "",
 }
 OF_IMPACT = {
     "axis": ", square of the impact parameter\nb in units of the sum of these radii",
@@ -133,14 +133,13 @@ def outcome_grid(model, structure, averaged, version):
     found[TOUCHING] = model.touching(own, averaged)
     if not averaged:
         found = found.join(model.remains.intervals(own)[list(INTERVALS)])
-    values = np.empty((len(points), len(columns)))
-    values[inside] = found.reindex(columns=columns)
-    values[~inside] = values[inside][_nearest(axes, points[~inside], own)]
+    rows = np.cumsum(inside) - 1
+    rows[~inside] = _nearest(axes, points[~inside], own)
+    grid = found.iloc[rows].reset_index(drop=True)
     # Runs of a smaller mass ratio, which count here too, may lose more over their projectile than an eroded one has.
-    loss = columns.index("loss_erosion")
-    values[:, loss] = np.minimum(values[:, loss], (1 - KEPT) / points.mass_ratio)
-    values[:, columns.index(INSIDE)] = inside
-    values[:, columns.index("runs")] = region.within(points, averaged)
+    grid["loss_erosion"] = np.minimum(grid.loss_erosion, (1 - KEPT) / points.mass_ratio)
+    grid[INSIDE], grid["runs"] = inside, region.within(points, averaged)
+    values = grid[list(columns)].to_numpy(dtype=float).reshape(*(len(axis.nodes) for axis in axes), -1)
     about = ABOUT.format(
         version=version,
         runs=len(model.runs),
@@ -154,7 +153,7 @@ def outcome_grid(model, structure, averaged, version):
         contact=ONE_CONTACT,
         **(AVERAGED if averaged else OF_IMPACT),
     )
-    return OutcomeTable(axes, columns, values.reshape(*(len(a.nodes) for a in axes), -1), tuple(about.splitlines()))
+    return OutcomeTable(axes, columns, values, tuple(about.splitlines()))
 
 
 def _nodes(axes):

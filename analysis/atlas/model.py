@@ -102,15 +102,8 @@ class Model:
         return Remains(self.runs)
 
     def probabilities(self, points, averaged=False):
-        """Probabilities of the outcomes.
-
-        Returns
-        -------
-        p : ndarray (n, 5)
-            Of rules.KINDS.
-        width : ndarray (n, 5)
-            Half widths of their intervals of LEVEL; None without members.
-        """
+        """Probabilities p (n, 5) of rules.KINDS and half widths (n, 5) of their intervals of LEVEL, None without
+        members."""
         fits = np.stack([self._of_fit(fit, points, averaged) for fit in self._fits])
         if len(fits) == 1:
             return fits[0], None
@@ -211,12 +204,9 @@ class Remains:
         return _Trees(self.points, self._values[list(TRAINED)])
 
     def means(self, points, p, averaged=False):
-        """Means at points, with the probabilities p (n, 5) of KINDS; averaged as Model has it.
+        """DataFrame (n rows) of means of LEFT and rules.OF_KIND at points, with the probabilities p (n, 5) of KINDS.
 
-        Returns
-        -------
-        DataFrame, n rows
-            LEFT and rules.OF_KIND. Pieces are means over the outcomes by p, of each outcome's runs: consistent with p.
+        Pieces are means over the outcomes by p, of each outcome's runs: consistent with p. averaged: as in Model.
         """
         parts = []
         for rows, here, weights in self._chunks(points, averaged):

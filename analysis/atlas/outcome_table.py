@@ -79,18 +79,13 @@ class OutcomeTable:
         columns : list of str, optional
             All by default; `inside` always comes too.
         **query : float or array
-            A value of every axis by its name; they broadcast.
+            A value of every axis by its name, 0 or more; they broadcast.
 
         Returns
         -------
         dict of arrays
             By column. `inside` is below 1 where the values are extrapolated: 0 beyond an edge, and between next to a
             node without data.
-
-        Raises
-        ------
-        ValueError
-            For a name that is no axis or column, and for NaN or negative values.
         """
         names = [axis.name for axis in self.axes]
         if sorted(query) != sorted(names):
@@ -130,12 +125,7 @@ class OutcomeTable:
         The distribution is that of collisions, v^3 exp(-3 v^2 / 2 <v^2>), as faster aggregates meet more often; with
         a threshold it gives the probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of
         collisions that are inside. Intervals are left out: means of their ends are no ends of an interval. Columns
-        rules.OF_KIND are means over the collisions with that outcome.
-
-        Raises
-        ------
-        OutcomeTableError
-            Where the table is one of distributed speeds already.
+        rules.OF_KIND are means over the collisions with that outcome. OutcomeTableError for a table that is one.
         """
         if OF_MAXWELL in self.comments:
             raise OutcomeTableError(f"table of outcomes: {OF_MAXWELL}; must be one of single speeds")

@@ -3,8 +3,8 @@
 A point is a row of a DataFrame with the columns FEATURES; variables() makes points of a table of runs.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import pandas
@@ -27,19 +27,8 @@ NEAREST = 5  # runs
 
 @lru_cache
 def breaking_velocity(material, radius):
-    """v_break = (E_break/m0)^(1/2) of grains, with m0 the mass of one; E_break: A22 eq 12.
-
-    Parameters
-    ----------
-    material : theory.Material
-    radius : float
-        Of the grains [m].
-
-    Returns
-    -------
-    float
-        [m/s]
-    """
+    """v_break = (E_break/m0)^(1/2) [m/s] of grains of a theory.Material and a radius [m], with m0 the mass of one and
+    E_break of A22 eq 12."""
     constants = pair_constants(material, radius)
     return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5
 
@@ -50,12 +39,7 @@ ONE_CONTACT = (sticking_velocity_without_drag(pair_constants(ICE, 1e-7)) / break
 
 
 def variables(table):
-    """Points of a table of runs.
-
-    Parameters
-    ----------
-    table : DataFrame, n rows
-        With the columns of atlas.columns.
+    """Points of a table of runs (DataFrame, n rows, with the columns of atlas.columns).
 
     Returns
     -------
@@ -119,10 +103,9 @@ def drawn(table):
     return table[~table.number.isin(CHOSEN) | (table.split == HELD_OUT)]
 
 
-@dataclass(frozen=True)
-class Slow:
+class Slow(NamedTuple):
     """Slow collisions, which all stick: `number` runs with an `energy` below this one [E_break] did, so that anything
-    else has a chance of at most `most` there (95 %; the upper end of an interval of 90 %)."""
+    else has a chance of at most `most` there (95 %)."""
 
     energy: float
     number: int

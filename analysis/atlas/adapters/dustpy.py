@@ -90,7 +90,9 @@ def dustpy_outcomes(table):
     Mass transfer sticks with (1 + gain_mass_transfer)/2 and else breaks. So the larger aggregate gains that on average:
     in DustPy it gains the smaller one's mass by sticking, and loses as much by erosion (excavatedMass = 1).
     """
-    p = _columns(table)
+    if missing := [name for name in (*PROBABILITIES, TOUCHING, *OF_KIND) if name not in table.columns]:
+        raise OutcomeTableError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
+    p = {name: table.column(name) for name in table.columns}
     transfer = p["p_mass_transfer"]
     sticks = (1.0 + p["gain_mass_transfer"]) / 2.0
     stick = p[TOUCHING] * (p["p_sticking"] + sticks * transfer)
@@ -100,14 +102,8 @@ def dustpy_outcomes(table):
 
 def mean_fragment_index(table):
     """Index n of dN/dm ~ m^-n of fragments: mean over the nodes inside of the data, by the probability of breaking."""
-    p = _columns(table)
-    return np.average(p["fragment_index"], weights=(p["p_erosion"] + p["p_fragmentation"]) * p[INSIDE])
-
-
-def _columns(table):
-    if missing := [name for name in (*PROBABILITIES, TOUCHING, *OF_KIND) if name not in table.columns]:
-        raise OutcomeTableError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
-    return {name: table.column(name) for name in table.columns}
+    breaking = table.column("p_erosion") + table.column("p_fragmentation")
+    return np.average(table.column("fragment_index"), weights=breaking * table.column(INSIDE))
 
 
 def fragments_of(mass, index):
