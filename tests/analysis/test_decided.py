@@ -104,6 +104,12 @@ def test_a_piece_that_oscillates_is_not_judged_by_its_turning_point():
     assert decided.is_recent(np.array([0.74, 0.76, 1.0]) * LONG, LONG, 0.0).tolist() == [False, True, True]
 
 
+def test_strength_grows_with_the_reduced_radius():
+    state = chain(np.zeros(4))
+    state["radius"] = np.array([1.0, 1.0, 3.0, 1e9])
+    assert decided.contact_strength(state, CONSTANTS) == pytest.approx([1, 1.5 ** (4 / 3), 6 ** (4 / 3)], rel=1e-6)
+
+
 @pytest.mark.parametrize("seed", range(30))
 def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
     random = np.random.default_rng(seed)

@@ -1,10 +1,11 @@
-"""Fragments and their sizes (A22 eqs 28, 31-33), outcomes, restitution: by hand and by brute force."""
+"""Fragments and their sizes (A22 eqs 28, 31-33), outcomes, restitution, velocities between neighbours: by hand and by brute force."""
 
 import numpy as np
 import pytest
 from written_runs import RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis.measures.fragments import *
+from analysis.measures.motion import pair_velocities, root_mean_square
 from analysis.measures.outcome import classify, collision_outcome
 from analysis.report.rows import row
 from analysis.runs.folder import open_run
@@ -149,3 +150,18 @@ def test_cumulative_distributions_of_hand_made_fragments(seed):
         assert cumulative_grains(found, [N])[0] == sum(n[k] * k for k in range(1, down + 1))
         expected = sum(n[k] * k ** (2 / 3) for k in range(1, down + 1))
         assert cumulative_cross_section(found, [N])[0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_velocities_of_neighbours_by_all_pairs():
+    random = np.random.default_rng(1)
+    position, velocity = random.uniform(0, 6, (80, 3)), random.normal(size=(80, 3))
+    expected = []
+    for i in range(80):
+        for j in range(i):
+            apart = position[i] - position[j]
+            distance = np.linalg.norm(apart)
+            if distance < 1.1:
+                expected.append(-(velocity[i] - velocity[j]) @ apart / distance)
+    assert len(expected) > 40
+    assert np.sort(pair_velocities(position, velocity, 1.1)) == pytest.approx(np.sort(expected))
+    assert np.isnan(root_mean_square([])) and root_mean_square([3.0, -4.0]) == pytest.approx(12.5**0.5)

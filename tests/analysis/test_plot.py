@@ -8,10 +8,7 @@ from analysis.__main__ import main
 from analysis.report.rows import table
 from analysis.studies.plot import CannotPlot, plot
 
-ENDS = {
-    1.0: ("sticking", "sticking", "bouncing", "undecided"),
-    3.0: ("fragmentation",) * 3 + ("sticking",),
-}
+ENDS = {1.0: ("sticking", "sticking", "bouncing", "undecided"), 3.0: ("fragmentation",) * 3 + ("sticking",)}
 
 
 @pytest.fixture
