@@ -1,2 +1,2 @@
-"""Figures, drawn without a display and saved as PNG: those of one run (of_run), and what all have in common (style,
-panels, save)."""
+"""Figures, drawn without a display and saved as PNG: of one run (collision, energy; listed in draw), and what all figures
+have in common (style, colours of grains, spheres as pixels)."""

@@ -1,1 +1,1 @@
-"""Reports on runs: rows (numbers and tables), text, plot (figures of many runs), status, and a PDF of a page."""
+"""Reports on runs: their numbers and tables (rows), the same as text (text), what has become of them (status)."""

@@ -1,4 +1,4 @@
-"""Fragments and their sizes (A22 eqs 28, 31-33), outcomes, restitution, velocities between neighbours: by hand and by brute force."""
+"""Fragments and their sizes (A22 eqs 28, 32, 33), outcomes, restitution, neighbours: by hand and by brute force."""
 
 import numpy as np
 import pytest
