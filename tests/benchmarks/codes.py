@@ -35,7 +35,6 @@ CODES = {
     "engine-avx2": Code("JKRWadaEngine, AVX2", "fused", "avx2"),
     "engine-portable": Code("JKRWadaEngine, portable", "fused", "portable"),
     "functors": Code("functors in YADE's loop", "functors"),
-    "stock": Code("YADE's CohFrictPhys", "stock", "", "linear springs and a bond between grains; no JKR, no energies"),
     **{name: Code(title, physics=peers.PHYSICS[name]) for name, title in peers.TITLES.items()},
 }
 

@@ -2,8 +2,7 @@
 
     yade -n -x in_yade.py '{"path": scene, "together", "law", "instructions"}'
 
-law: fused (the engine, `together` small steps in an O.step), functors, or stock (YADE's cohesive law CohFrictPhys with
-moments: sliding, rolling, twisting). Reads requests, a line of JSON each ({"threads", "seconds", "most"}), until its
+law: fused (the engine, `together` small steps in an O.step) or functors. Reads requests, a line of JSON each ({"threads", "seconds", "most"}), until its
 input ends, and prints a line "ANSWER " + JSON for each. The scene goes on from request to request, so that
 measurements of several codes can alternate.
 """
@@ -24,8 +23,7 @@ from yade.minieigenHP import Matrix3, Vector3
 from yade.wrapper import *
 
 import contact_law
-from analysis.theory import Material, pair_constants
-from yade_scripts.run.scene import VERLET_DISTANCE, functor_engines
+from yade_scripts.run.scene import functor_engines
 
 BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
 
@@ -33,12 +31,10 @@ BLOCKED = {1: "x", 2: "y", 4: "z", 8: "X", 16: "Y", 32: "Z"}
 # ---- bodies and contacts ----
 
 
-def add_bodies(scene, law="fused"):
+def add_bodies(scene):
     """Append the grains of a SceneFile to O.bodies."""
     for material in scene.materials:
-        given = {name: float(material[name]) for name in material.dtype.names}
-        stock = law == "stock" and stock_material(Material(*material.tolist()), float(scene.grains["radius"][0]))
-        O.materials.append(stock or JKRMat(**given))
+        O.materials.append(JKRMat(**{name: float(material[name]) for name in material.dtype.names}))
     columns = [scene.grains[name].tolist() for name in scene.grains.dtype.names]
     bodies = []
     for position, velocity, spin, radius, mass, inertia, material, blocked in zip(*columns):
@@ -49,19 +45,6 @@ def add_bodies(scene, law="fused"):
             state.blockedDOFs = "".join(letter for bit, letter in BLOCKED.items() if blocked & bit)
         bodies.append(body)
     O.bodies.append(bodies)
-
-
-def stock_material(given, radius):
-    """Of the stock law, for like grains: springs of JKR's slope at equilibrium (A24 eq 38) and of W07, which break at
-    JKR's pull; no limit of sliding."""
-    c = pair_constants(given, radius)
-    kn, ks = 6 * c.pull_off_force / (5 * c.equilibrium_overlap), c.sliding_stiffness
-    rolling, twisting = c.rolling_stiffness / 4 / ks, c.twisting_stiffness / (ks * radius**2)
-    springs = {"young": kn / radius, "poisson": ks / kn, "alphaKr": rolling, "alphaKtw": twisting}
-    no_limits = {"etaRoll": -1, "etaTwist": -1, "momentRotationLaw": True, "frictionAngle": 0.5}
-    pull = c.pull_off_force / radius**2
-    cohesion = {"isCohesive": True, "normalCohesion": pull, "shearCohesion": 1e3 * pull}
-    return CohFrictMat(density=given.density, **springs, **no_limits, **cohesion)
 
 
 def add_contacts(contacts, law):
@@ -100,38 +83,11 @@ def start_engine(scene, sub_steps, threads=1, instructions=""):
     O.engines[0].prepare()
 
 
-def start_loop(scene, law):
-    """YADE's own loop, with this repository's law (functors) or the stock one, for grains without contacts."""
+def start_functors(scene):
+    """This repository's functors in YADE's own loop, for grains without contacts."""
+    O.dt, O.trackEnergy = float(scene.head["step"]), True
     radius = float(scene.grains["radius"].max())
-    O.dt, O.trackEnergy = float(scene.head["step"]), law == "functors"
-    if law == "functors":
-        O.engines = functor_engines(radius, PyRunner(command="pass", iterPeriod=10**9))
-        return
-    constants = Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True)
-    law = Law2_ScGeom6D_CohFrictPhys_CohesionMoment(useIncrementalForm=True)
-    O.engines = [
-        ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=VERLET_DISTANCE * radius),
-        InteractionLoop([Ig2_Sphere_Sphere_ScGeom6D()], [constants], [law]),
-        NewtonIntegrator(damping=0),
-    ]
-    settle(scene.grains)
-
-
-def settle(grains):
-    """Let grains (scene_file.GRAIN,) of the stock law touch now without a force: a step adds to their springs the way
-    of the step before it, which a step backwards takes away, after which all is where it was."""
-
-    def place(sign):
-        velocity, spin = ((sign * grains[name]).tolist() for name in ("velocity", "angularVelocity"))
-        for body, *now in zip(O.bodies, grains["position"].tolist(), velocity, spin):
-            body.state.pos, body.state.vel, body.state.angVel = now
-
-    place(-1)
-    O.step()
-    for contact in O.interactions:
-        contact.phys.unp = contact.geom.penetrationDepth
-    place(1)
+    O.engines = functor_engines(radius, PyRunner(command="pass", iterPeriod=10**9))
 
 
 # ---- measurements ----
@@ -166,11 +122,11 @@ def measure(fused, small_steps, threads, seconds, most):
 
 def main(path, together, law, instructions):
     scene, fused = scene_file.load(path), law == "fused"
-    add_bodies(scene, law)
+    add_bodies(scene)
     if fused:
         start_engine(scene, together, threads=2, instructions=instructions)
     else:
-        start_loop(scene, law)
+        start_functors(scene)
     O.step(), O.step()
     for line in sys.stdin:
         found = measure(fused, together if fused else 1, **json.loads(line))

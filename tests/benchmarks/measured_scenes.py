@@ -17,8 +17,8 @@ from yade_scripts.materials import pair_constants
 from yade_scripts.packings.placing import first_touch, smallest_edge
 
 BESIDE_LAMMPS = ("engine", "lammps")
-IN_YADE = ("engine", "engine-avx2", "engine-portable", "functors", "stock")
-EVERY = ("engine", "functors", "stock", "lammps", "lammps-newest", "liggghts")
+IN_YADE = ("engine", "engine-avx2", "engine-portable", "functors")
+EVERY = ("engine", "functors", "lammps", "lammps-newest", "liggghts")
 FLYING = {"flying": 0.0}
 SMALL_STEPS = 50  # in an O.step of a collision
 

@@ -132,44 +132,28 @@ def springs(c, n, distance, n1, n2, phi):
     return [c.ks * z / distance * x for x in zeta], torque1, torque2
 
 
-# ---- ordinary differential equations: extrapolated midpoint steps (Gragg, Bulirsch & Stoer) ----
-
-COLUMNS, TOLERANCE = 16, mpf(10) ** -22  # of an extrapolation; relative to the largest change of a component in a step
+# ---- ordinary differential equations ----
 
 
-def integrate(rate, start, end, y, first):
-    """y (list) at `end` of y' = rate(t, y), from `start`, by steps of `first` or shorter."""
-    t, step = start, first if end > start else -first
-    while t != end:
-        if abs(end - t) <= abs(step) * mpf("1.0000001"):
-            step = end - t
-        found = extrapolated(rate, t, y, step)
-        if found is None:
-            step /= 2
-        else:
-            t, y = (end if step == end - t else t + step), found
+def integrate(rate, start, end, y, steps, columns=14):
+    """y (list) at `end` of y' = rate(t, y), from `start`, by equal steps: midpoint rules of 2, 4, 6 ... parts in each,
+    extrapolated (Gragg, Bulirsch & Stoer)."""
+    h = (end - start) / steps
+    for step in range(steps):
+        rows = []
+        for k in range(columns):
+            rows.append([midpoint(rate, start + step * h, y, h, 2 * (k + 1))])
+            for j in range(k):
+                factor = (mpf(k + 1) / (k - j)) ** 2 - 1
+                rows[k].append([a + (a - b) / factor for a, b in zip(rows[k][j], rows[k - 1][j])])
+        y = rows[-1][-1]
     return y
 
 
-def extrapolated(rate, t, y, step):
-    rows, slope = [], rate(t, y)
-    for k in range(COLUMNS):
-        row = [midpoint(rate, t, y, step, 2 * (k + 1), slope)]
-        for j in range(k):
-            factor = (mpf(k + 1) / (k - j)) ** 2 - 1
-            row.append([a + (a - b) / factor for a, b in zip(row[j], rows[j])])
-        if k > 2:
-            scales = [max(abs(now), abs(now - then)) for now, then in zip(row[-1], y)]
-            if all(abs(a - b) <= TOLERANCE * s for a, b, s in zip(row[-1], row[-2], scales)):
-                return row[-1]
-        rows = row
-    return None
-
-
-def midpoint(rate, t, y, step, n, slope):
-    h = step / n
-    before, now = y, [a + h * b for a, b in zip(y, slope)]
-    for k in range(1, n):
+def midpoint(rate, t, y, step, parts):
+    h = step / parts
+    before, now = y, [a + h * b for a, b in zip(y, rate(t, y))]
+    for k in range(1, parts):
         before, now = now, [a + 2 * h * b for a, b in zip(before, rate(t + k * h, now))]
     return [(a + b + h * c) / 2 for a, b, c in zip(before, now, rate(t + step, now))]
 

@@ -163,7 +163,7 @@ def linear_drag():
     law = "m* d2 delta/dt2 = -F - k_n (m0/t0) d delta/dt, m0 = 2 m*, t0 with E*, "
     law, source = law + "from delta = 0 with the speed of approach", "A22 (5); K13 (2), (4)"
     for time in (1e-9, 2e-9, 3e-9):
-        y = integrate(damped_rate(c), t, exact(time), y, c.t0)
+        y = integrate(damped_rate(c), t, exact(time), y, 12)
         t, name = exact(time), f"at {time * 1e9:g} ns"
         questions.append(asked(f"overlap {name}", at(time, "overlap"), overlap(c, y[0]), "m", law, source, c.d0))
         questions.append(asked(f"approach {name}", at(time, "approach"), y[1], "m/s", law, source, exact(speed)))
@@ -185,9 +185,10 @@ def viscous_drag():
         du, dv = by_time(None, [u, y[1]])
         return [1 / du, dv / du]
 
-    turn, top = integrate(by_speed, v0, mpf(0), [birth, U_BIRTH], v0 / 8)
-    t, u = integrate(by_speed, mpf(0), -v0 / 20, [turn, top], v0 / 40)
-    broken, v = integrate(by_root, u, U_BREAK, [t, -v0 / 20], mpf("0.05"))
+    u, v = integrate(by_time, birth, exact(2e-10), [U_BIRTH, v0], 40)  # by time while the force pulls
+    turn, top = integrate(by_speed, v, mpf(0), [exact(2e-10), u], 16)
+    t, u = integrate(by_speed, mpf(0), -v0 / 4, [turn, top], 16)
+    broken, v = integrate(by_root, u, U_BREAK, [t, -v0 / 4], 80)
     law = "m* d2 delta/dt2 = -F - 2 A E* a d delta/dt, A = mean of T_vis/nu^2 of the two grains, "
     law, source = law + "from delta = 0 to -delta_c", "A22 (5), (7)"
     questions = [

@@ -254,7 +254,7 @@ def free_rotation():
     w1, w2 = ([exact(w) for w in spin] for spin in spins)
     y, step = [*x, *v, *w1, *w2, *X, *AWAY, mpf(0)], exact(end) / 40
     for k in range(40):
-        y = integrate(free_rate(c), k * step, (k + 1) * step, y, step)
+        y = integrate(free_rate(c), k * step, (k + 1) * step, y, 1, columns=9)
         check_limits(c, [a / size(y[:3]) for a in y[:3]], y[12:15], y[15:18], y[18])
     law = (
         "F = F_n n_c + F_s, torques: springs of pointers that turn with the grains; integrated",
