@@ -7,7 +7,7 @@ import pandas
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
 from ..printable import suggested
 from ..report.rows import at_end, differing, parameters, table, varied
-from ..runs.format import CHANNELS, COLOURS, COMPRESSION
+from ..runs.format import CHANNELS, COLOURS, COMPRESSION, same, value_text
 from ..runs.table import FOLDER
 from .estimates import ending, estimate, mean
 from .figures import curves
@@ -71,7 +71,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     files = [name for name in FILES if name in found and found[name].notna().any()]
     found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
     for name in filter(None, (x, by)):
-        found[name] = found[name].map(_rounded)
+        found[name] = found[name].map(lambda value: float(value_text(value)) if isinstance(value, float) else value)
     if logarithmic is None:
         logarithmic = "x" if found[x].min() > 0 and found[x].max() >= 10 * found[x].min() else ""
     figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
@@ -123,17 +123,13 @@ def _require_columns(found, what, x, by, where, seed):
 def _only(found, name, value):
     """The runs with a value in a column."""
     column = found[name]
-    if column.dtype.kind in "fiu":
-        if isinstance(value, str):
-            raise CannotPlot(f"where {name} = {value}: must be a number")
-        same = column.map(_rounded) == _rounded(float(value))
-    else:
-        same = column == value
-    if not same.any():
-        raise CannotPlot(
-            f"where {name} = {value}: no run is left; must be one of {', '.join(map(str, column.unique()))}"
-        )
-    return found[same]
+    if column.dtype.kind in "fiu" and isinstance(value, str):
+        raise CannotPlot(f"where {name} = {value}: must be a number")
+    kept = column.map(lambda own: same(own, value))
+    if not kept.any():
+        there = ", ".join(map(str, column.unique()))
+        raise CannotPlot(f"where {name} = {value}: no run is left; must be one of {there}")
+    return found[kept]
 
 
 def _complete(found, what, x, by):
@@ -157,8 +153,3 @@ def _require_drawable(found, what, x, by, seed):
     others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
     if others and x in parameters(found):
         raise CannotPlot(differing(found, others, "choose by or where"))
-
-
-def _rounded(value):
-    """Numbers that differ by rounding alone are one value of x."""
-    return float(f"{value:.9g}") if isinstance(value, float) else value
