@@ -78,7 +78,8 @@ def belongs_to_an_aggregate(aggregate, contact_pairs, mass, least_fraction=0.1):
     whole = np.bincount(aggregate, weights=mass)
     found = fragment_masses(labels, mass)[labels] >= least_fraction * whole[aggregate] * (1.0 - 1e-12)
     for number in np.setdiff1d(aggregate, aggregate[found]):
-        raise ValueError(f"aggregate {number} is in crumbs: no piece of it holds {least_fraction:.0%} of its mass")
+        must = f"its largest piece must hold {least_fraction:.0%} of its mass"
+        raise ValueError(f"aggregate {number} is in crumbs: {must}")
     return found
 
 
