@@ -82,13 +82,15 @@ def ending(runs, *outcomes):
 
 def bouncing_exponent(runs):
     """a of N ~ v^a, the grains from which on half of the runs bounce: logistic regression on ln N and ln v."""
-    from sklearn.linear_model import LogisticRegression
-
-    x = np.log(runs[["size", "speed"]].to_numpy())
-    scatter = x.std(axis=0)
+    try:
+        from sklearn.linear_model import LogisticRegression
+    except ModuleNotFoundError:  # the package does without it
+        return np.nan
     bounced = runs.outcome == BOUNCING
     if bounced.all() or not bounced.any():
         return np.nan
+    x = np.log(runs[["size", "speed"]].to_numpy())
+    scatter = x.std(axis=0)
     by_size, by_speed = LogisticRegression(C=100.0).fit((x - x.mean(axis=0)) / scatter, bounced).coef_[0] / scatter
     return -by_speed / by_size
 

@@ -15,10 +15,7 @@ ten rows one, drawn at random, is held out: its name ends in -held, it is not ch
 every ten one is of silicate, at the same velocities over v_break = (E_break/m0)^(1/2), but no compressed one.
 
 Close-packed (CPE) aggregates are without loose grains. Compressed ones are spheres cut out of BCCA clusters that were
-compressed in a periodic cell (as in Oshiro et al. 2025), a pair of one cell. Every row has packings of its own.
-
-Pairs that never touch on straight ways have a duration of MISSED; others end when nothing can happen any more. The time
-step is the longest for a ledger that closes to TOLERANCE of K(0) in 95 % of runs (yade_scripts/step_choice.py).
+compressed in a periodic cell (as in Oshiro et al. 2025), a pair of one cell.
 """
 
 import argparse
@@ -58,8 +55,8 @@ LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
 VELOCITIES = (0.3, 100.0)  # m/s, of ice
 FILLINGS = {"cpe": (0.25, 0.55), "compressed": (0.1, 0.5)}  # N (r/R)^3; CPE aggregates that are fluffier fall apart
 GRAIN_RADIUS = 1e-7  # m
-TOLERANCE, LONGEST = 0.01, 0.2  # of K(0); t0
-MISSED = "1e-9"  # s
+TOLERANCE, LONGEST = 0.01, 0.2  # of the ledger, over K(0), in 95 % of runs; step [t0]
+MISSED = "1e-9"  # s: duration of pairs that never touch on straight ways
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
 KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
 CANDIDATES = 8  # of which one was chosen
@@ -170,12 +167,11 @@ def row(scene):
     }
 
 
-def with_duration(cells):
-    """A row's cells; with a short duration if its aggregates, whose packings must be there, never touch."""
+def never_touch(cells):
+    """Whether the aggregates of a row, whose packings must be there, pass each other on straight ways."""
     parameters = _parsed(CollisionParameters, {name: cells[name] for name in cells if name != "description"})
     _, pair, (target, projectile) = place(parameters, equilibrium_overlap(parameters))
-    missed = first_touch(*pair, projectile - target) is None
-    return {**cells, "duration": MISSED} if missed else cells
+    return first_touch(*pair, projectile - target) is None
 
 
 def step(scene):
@@ -191,14 +187,6 @@ def step(scene):
 
 def _parsed(kind, cells):
     return kind.parse({name: str(value) for name, value in cells.items()})
-
-
-def make_packings(scene):
-    """Make both aggregates of a Scene that come from files, where they are missing. Raises PackingError."""
-    if not all(map(os.path.exists, scene.files)):
-        maker = _close_packed if scene.structure == "cpe" else _compressed
-        for index, file in enumerate(scene.files):
-            packings.save(file, maker(scene, index))
 
 
 def _close_packed(scene, index):
@@ -259,9 +247,12 @@ def write(size, first=0, last=None):
     os.makedirs(PACKINGS, exist_ok=True)
     rows = []
     for scene in progress(scenes(min(last or SIZES[size], SIZES[size]))[first:], "making packings"):
-        if scene.structure in FILLINGS:
-            make_packings(scene)
-        rows.append(with_duration(row(scene)))
+        if scene.structure in FILLINGS and not all(map(os.path.exists, scene.files)):
+            maker = _close_packed if scene.structure == "cpe" else _compressed
+            for index, file in enumerate(scene.files):
+                packings.save(file, maker(scene, index))
+        cells = row(scene)
+        rows.append({**cells, "duration": MISSED} if never_touch(cells) else cells)
     head = "The collisions of the atlas. Written by yade_scripts/studies/atlas.py.\n"
     head += "Units: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0."
     table.write(f"runs/{'-'.join(['atlas', size, *map(str, part)])}.table", rows, head)
