@@ -70,11 +70,22 @@ def time_unit(density, radius, reduced_young, surface_energy):
 
 
 def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0):
-    """PairConstants of two grains: materials and radii [m]; the second grain equals the first where it is left out,
-    and is a plane where radius2 is infinite.
+    """Constants of the contact of two grains, or of a grain and a plane.
 
-    linear_damping is K13's k_n, sliding_factor what k_s is over 8 a0 G* (S17's eqs 11 and 12: 2), both dimensionless.
-    Sources: the module's head and PairConstants.
+    Parameters
+    ----------
+    material1, material2 : Material
+        The second one equals the first if left out.
+    radius1, radius2 : float [m]
+        The second one is infinite for a plane, and equals the first if left out.
+    linear_damping : float
+        K13's k_n.
+    sliding_factor : float
+        k_s over 8 a0 G*; 2 as in S17's eqs 11 and 12.
+
+    Returns
+    -------
+    PairConstants
     """
     material2 = material1 if material2 is None else material2
     radius2 = radius1 if radius2 is None else radius2
