@@ -46,16 +46,14 @@ class Outcome:
     largest_fragment: int  # grains of the heaviest piece, all counted
     growth_efficiency: float  # A22 eq 28 by mass, all grains, the target being the heavier aggregate
     fragments: int  # their number
-    excluded_grains: int  # not counted in the mass fractions
     why_undecided: str | None = None  # in a few words
-    seen: str | None = None  # the kind of an undecided one if nothing changed any more
     mass_on_plate: float | None = None  # the fraction that sticks to a plate (plate.py)
 
     def if_decided(self, why):
         """The same; undecided where there is a reason for it."""
         if why is None:
             return self
-        return replace(self, kind=UNDECIDED, restitution=None, why_undecided=why, seen=self.kind)
+        return replace(self, kind=UNDECIDED, restitution=None, why_undecided=why)
 
 
 def sticks(largest, target):
@@ -150,7 +148,6 @@ def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_veloci
         int(largest.sum()),
         growth_efficiency(mass[largest].sum(), heavy, light),
         int(labels.max()) + 1,
-        int((~counted).sum()),
     )
 
 

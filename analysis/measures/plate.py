@@ -106,7 +106,6 @@ def plate_outcome(start, end, met):
         int(sizes[heaviest_fragment(labels, of_grains)]),
         float(of_grains[labels == labels[-1]].sum() / of_grains.sum()),
         int((sizes > 0).sum()),
-        int((~counted[:-1]).sum()),
         mass_on_plate=on,
     )
 

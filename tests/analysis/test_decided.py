@@ -172,7 +172,7 @@ def test_outcome_and_whether_it_is_decided(kind, state, since_touch, on, restitu
     assert seen.if_decided(why).restitution == restitution
 
 
-def test_what_lies_on_the_plate_is_told_by_mass():
+def test_what_lies_on_the_plate_counts_by_its_mass():
     """Four grains of twice the radius on the plate, and sixteen single ones that left it."""
     radii = np.repeat([2.0, 1.0], [4, 16])
     start, end = ({**state, "radius": radii} for state in (START, standing(UPPER_HALF, broken=[3])))
