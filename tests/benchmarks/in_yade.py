@@ -2,9 +2,9 @@
 
     yade -n -x in_yade.py '{"path": scene, "together", "law", "instructions"}'
 
-law: fused (the engine, `together` small steps in an O.step) or functors. Reads requests, a line of JSON each ({"threads", "seconds", "most"}), until its
-input ends, and prints a line "ANSWER " + JSON for each. The scene goes on from request to request, so that
-measurements of several codes can alternate.
+law: fused (the engine, `together` small steps in an O.step) or functors. Reads requests, a line of JSON each
+({"threads", "seconds", "most"}), until its input ends, and prints a line "ANSWER " + JSON for each. The scene goes on
+from request to request, so that measurements of several codes can alternate.
 """
 
 import json
