@@ -10,8 +10,9 @@ TOP = HERE.parents[1]
 
 @dataclass(frozen=True)
 class Mutation:
-    """room: the table it stands in; file: where `code`, which stands there once, becomes another; wrong: what a physicist would
-    call broken; tests: those expected to fail (files, or as pytest names one); plugin: whether they need it compiled anew."""
+    """room: the table it stands in; file: where `code`, which stands there once, becomes another; wrong: what a
+    physicist would call broken; tests: those expected to fail (files, or as pytest names one); plugin: whether they
+    need it compiled anew."""
 
     room: str
     file: str

@@ -1,4 +1,4 @@
-"""Breaks copies of the code, one slip each, and asks whether the tests notice; writes results/mutations.md.
+"""Breaks copies of the code, one slip each, and runs the tests that must notice; writes build/mutations.md.
 
     python3 tests/mutations/run_mutations.py [WORD ...] [-j JOBS]
 
@@ -29,8 +29,8 @@ LONGEST = 3600  # s for the tests of one mutation
 COMPILED = ("objects", "*.gch")  # of build/: only for a copy that compiles
 HEAD = """# Mutations
 
-Each row is a slip in the code that a test has to notice; `tests/mutations/*.toml` has the lines. The tests expected to fail run on a copy
-with this one change, after they have passed without it.
+Each row is a slip in the code that a test has to notice; `tests/mutations/*.toml` has the lines.
+The tests expected to fail run on a copy with this one change, after they have passed without it.
 
 `make test-mutations`, commit {commit}, {cpu}, {cores} cores, {minutes:.0f} minutes.
 
@@ -59,7 +59,7 @@ def copy_of_the_tree(compiles):
         for name in (name for name in listed if name and (TOP / name).exists()):
             (Path(top) / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(TOP / name, Path(top) / name)
-        left_out = shutil.ignore_patterns("lint", "ovito", "harness", *(() if compiles else COMPILED))
+        left_out = shutil.ignore_patterns("lint", "lammps", "docs", "newest", *(() if compiles else COMPILED))
         shutil.copytree(TOP / "build", Path(top) / "build", symlinks=True, ignore=left_out)
         yield Path(top)
 
@@ -115,7 +115,7 @@ def main(arguments):
     print(f"{len(chosen) - missed} of {len(chosen)} were noticed")
     if not options.words:
         head = HEAD.format(**about, minutes=(time.monotonic() - begun) / 60)
-        (HERE / "results/mutations.md").write_text(head + "".join(rows))
+        (TOP / "build/mutations.md").write_text(head + "".join(rows))
     return 1 if missed else 0
 
 
