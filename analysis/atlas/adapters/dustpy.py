@@ -19,7 +19,6 @@ from ..outcome_table import INSIDE, PROBABILITIES, TOUCHING, OutcomeTable, Outco
 from ..query import MOSTLY, radius_of
 from ..rules import OF_KIND
 
-PER_NODE = 4  # speeds between two nodes of the table at which a pair's probabilities are kept
 CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
 
 
@@ -132,13 +131,14 @@ class AtlasInDustPy:
 
     def breaking(self, sim):
         """sim.dust.p.frag (Nr, Nm, Nm); 0 in the first and last radial cell."""
-        found = self._probabilities(sim)
+        found = self._lookup(sim)
+        stick, frag = found["stick"], found["frag"]
         if self.own_frag is not None:
-            own = found["own"] * np.asarray(self.own_frag.beat(sim))[self.pairs]
-            found["frag"] += own
-            found["stick"] -= own
-        self._stick = self._field(np.minimum(found["stick"], 1.0 - found["frag"]))  # but for rounding
-        return self._field(found["frag"])
+            inside, own = found[INSIDE], np.asarray(self.own_frag.beat(sim))[self.pairs]
+            stick = inside * stick + (1.0 - inside) * (1.0 - own)
+            frag = inside * frag + (1.0 - inside) * own
+        self._stick = self._field(np.minimum(stick, 1.0 - frag))  # but for rounding
+        return self._field(frag)
 
     def sticking(self, _):
         """sim.dust.p.stick (Nr, Nm, Nm), which DustPy updates after p.frag."""
@@ -201,56 +201,39 @@ class AtlasInDustPy:
             "filling": (filled[:, self.smaller] + filled[:, self.larger]) / (small + large),
         }
 
-    def _probabilities(self, sim):
-        """{stick, frag and maybe own: (Nr - 2, pairs)}: from a curve over the speed for each pair where grains and
-        filling are the same at every radius; else from the table, which takes 0.3 us a pair and step."""
+    def _lookup(self, sim):
+        """{column of the table: (Nr - 2, pairs)}: from curves over the speed where grains and filling are the same at
+        every radius; else from the table, which takes 0.3 us a pair and step."""
         dust = np.array([sim.dust.rhos, sim.dust.fill])[:, 1:-1]
         if np.ptp(dust, axis=1).any():
-            return self._found(**self._query(sim))
+            return self.table.lookup(**self._query(sim))
         if self._curves_of is None or not np.array_equal(dust[:, 0], self._curves_of):
             first = {name: values[0] for name, values in self._query(sim, 1.0).items()}
-            unit = first.pop("velocity")
-            self._curves_of, self._curves = dust[:, 0], _Curves(self._found, self.table.axes[0], first, unit)
+            self._curves_of, self._curves = dust[:, 0], _Curves(self.table, first)
         return self._curves.at(np.asarray(sim.dust.v.rel.tot)[self.pairs])
-
-    def _found(self, **query):
-        """{stick, frag} of the table; where DustPy decides outside of the data, of the part inside, and `own`, the part
-        outside, in which `stick` is all."""
-        found = self.table.lookup(**query)
-        inside = found.pop(INSIDE)
-        if self.own_frag is None:
-            return found
-        own = 1.0 - inside
-        return {"stick": inside * found["stick"] + own, "frag": inside * found["frag"], "own": own}
 
 
 class _Curves:
-    """Columns of each pair, linear in the logarithm of the speed between PER_NODE points a node of the first axis.
+    """Columns of a table against the speed, for pairs of which all else stays: query {axis: (pairs,)}, at 1 cm/s."""
 
-    found(velocity=, **query) -> {column: array}; query: {another axis: (pairs,)}; unit (pairs,): the table's velocity
-    over that in cm/s.
-    """
-
-    def __init__(self, found, axis, query, unit):
-        first, last = axis.nodes[[0, -1]]
-        steps = len(axis.nodes) - 1
-        self.knots = np.interp(np.arange(PER_NODE * steps + 1) / PER_NODE, np.arange(steps + 1), np.log(axis.nodes))
-        inner = np.clip(np.exp(self.knots), first, last)  # but for rounding
-        speeds = np.concatenate([[0.5 * first], inner, [2.0 * last]])
-        columns = found(velocity=speeds, **{name: values[:, None] for name, values in query.items()})
+    def __init__(self, table, query):
+        unit, nodes = query.pop("velocity"), table.axes[0].nodes
+        speeds = np.concatenate([[0.5 * nodes[0]], nodes, [2.0 * nodes[-1]]])
+        columns = table.lookup(velocity=speeds, **{name: values[:, None] for name, values in query.items()})
         self.names, values = tuple(columns), np.stack(list(columns.values()), axis=-1)  # (pairs, speeds, columns)
+        # Straight lines: their starts, and how far they rise; beyond the ends all is constant.
         starts, rise = np.delete(values, -2, axis=1), np.diff(values, axis=1)
-        rise[:, [0, -1]] = 0.0  # constant beyond the ends
+        rise[:, [0, -1]] = 0.0
         self.lines = np.concatenate([starts, rise], axis=-1).reshape(-1, 2 * len(columns))
         self.first = np.arange(len(unit), dtype=np.int32) * starts.shape[1]
-        self.unit = np.log(unit)
+        self.unit, self.nodes = np.log(unit), np.log(nodes)
 
     def at(self, speeds):
         """{column: (Nr - 2, pairs)} at speeds (Nr - 2, pairs) [cm/s]."""
         with np.errstate(divide="ignore"):
             position = np.log(speeds)
         position += self.unit
-        position = np.interp(position, self.knots, np.arange(1, len(self.knots) + 1), left=0.0)
+        position = np.interp(position, self.nodes, np.arange(1, len(self.nodes) + 1), left=0.0)
         line = position.astype(np.int32)
         position -= line
         line += self.first
