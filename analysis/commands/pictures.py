@@ -14,25 +14,23 @@ FORMATS = "vtk", "xyz"
 def add_parsers(commands):
     """Add the commands to argparse's subparsers."""
     _add_plot(commands)
-    figures = _of_one_run(
-        *(commands, "figures", "draw a run's figures", "FOLDER", "RUN/figures, made if it is missing"),
+    figures = _of_one_run(commands, "figures", "draw a run's figures", "FOLDER", "RUN/figures")
+    figures.description = (
         "Write motion.png (d and v against time, of equal aggregates), energy.png (the channels), grains.png (the "
         "grains, dense aggregates cut through the middle) and forces.png (contact forces); of a compression "
-        "compression.png alone.",
+        "compression.png alone."
     )
     figures.set_defaults(command=draw_figures)
-    view = _of_one_run(
-        *(commands, "view", "write a page on which the aggregates can be turned", "FILE", "RUN/view.html"),
+    view = _of_one_run(commands, "view", "write a page on which the aggregates can be turned", "FILE", "RUN/view.html")
+    view.description = (
         "Write the saved states as one HTML file for a browser: turn, zoom, go through the states, colour by "
-        "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js "
-        "(Debian: libjs-three).",
+        "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js (Debian: "
+        "libjs-three)."
     )
     view.add_argument("--three", metavar="FOLDER", help="three.js, r110 to r147 (default: Debian's)")
     view.set_defaults(command=write_view)
-    film = _of_one_run(
-        *(commands, "film", "write a film of a run's states", "FILE", "RUN/film.mp4; .gif: repeats"),
-        "Write a film with a frame for each saved state. Needs ffmpeg.",
-    )
+    film = _of_one_run(commands, "film", "write a film of a run's states", "FILE", "RUN/film.mp4; .gif: repeats")
+    film.description = "Write a film with a frame for each saved state. Needs ffmpeg."
     rate = number(lambda rate: 0.1 <= rate <= 120, "from 0.1 to 120")
     film.add_argument("--rate", metavar="FRAMES", type=rate, default=10.0, help="states a second (default: 10)")
     film.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is seen (default: z)")
@@ -43,9 +41,9 @@ def add_parsers(commands):
     _add_export(commands)
 
 
-def _of_one_run(commands, name, about, place, default, description):
+def _of_one_run(commands, name, about, place, default):
     """The parser of a command that writes something of one run."""
-    parser = commands.add_parser(name, help=about, description=description)
+    parser = commands.add_parser(name, help=about)
     parser.add_argument("run", metavar="RUN", help="run folder")
     parser.add_argument("--out", metavar=place, help=f"where to (default: {default})")
     return parser
@@ -85,8 +83,8 @@ def _add_plot(commands):
     parser = commands.add_parser(
         "plot",
         help="draw a quantity of many runs against one of their parameters",
-        description="Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), energy "
-        "(where it went, by channel), or any column of analysis.table against another, with standard errors over the "
+        description="Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), "
+        "energy (where it went, by channel), or any column of analysis.table against another, with standard errors over the "
         "pairs of aggregates; write a PNG and print its path.",
     )
     parser.add_argument("what", metavar="WHAT", help="sticking, largest, energy, or a column")
@@ -148,14 +146,11 @@ def _add_export(commands):
     about = "Write the states of a run as VTK files (run.pvd: open it in ParaView or OVITO) or as extended XYZ\n"
     about += "(run.xyz: OVITO, ASE), in SI units.\n"
     for title, fields in (("grains (v is called velo in run.xyz)", GRAINS), ("contacts (VTK only)", CONTACTS)):
-        about += f"\n{title}:" + "".join(
-            f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields
-        )
-    parser = _of_one_run(
-        *(commands, "export", "write a run's states for ParaView, OVITO and others", "FOLDER"),
-        *("RUN/export, made if it is missing", about),
-    )
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+        about += f"\n{title}:"
+        about += "".join(f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields)
+    text = "write a run's states for ParaView, OVITO and others"
+    parser = _of_one_run(commands, "export", text, "FOLDER", "RUN/export")
+    parser.description, parser.formatter_class = about, argparse.RawDescriptionHelpFormatter
     parser.add_argument(
         "--format",
         choices=(*FORMATS, "all"),
