@@ -84,8 +84,8 @@ def _add_plot(commands):
         "plot",
         help="draw a quantity of many runs against one of their parameters",
         description="Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), "
-        "energy (where it went, by channel), or any column of analysis.table against another, with standard errors over the "
-        "pairs of aggregates; write a PNG and print its path.",
+        "energy (where it went, by channel), or any column of analysis.table against another, with standard errors "
+        "over the pairs of aggregates; write a PNG and print its path.",
     )
     parser.add_argument("what", metavar="WHAT", help="sticking, largest, energy, or a column")
     parser.add_argument("runs", nargs="+", metavar="RUNS", help=RUNS)
