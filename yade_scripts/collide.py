@@ -9,11 +9,10 @@
 Numbers may be written as arithmetic: velocity=10**0.5. A22 and A24 are Arakawa et al. (2022, 2024), S17 is
 Sirono & Ueno (2017), W07 Wada et al. (2007); t0 is the time unit of the contact, K(0) the initial kinetic energy.
 
-Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing
-was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder
-that can be read, with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does
-continue=FOLDER, which takes all parameters from the run's folder; a run that is undecided goes on with duration=... beside.
-"""
+Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing was run),
+1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder that can be read,
+with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does continue=FOLDER, which takes
+all parameters from the run's folder; a run that is undecided goes on with duration=... beside."""
 
 import os
 import signal

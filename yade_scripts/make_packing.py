@@ -5,13 +5,12 @@
     python3 yade_scripts/make_packing.py a.npz from=agg.xyz unit=um radius=0.1         of another program
     python3 yade_scripts/make_packing.py a.npz from=RUN/states/000059.npz radius=8     cut out of a compression
 
-The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a packing
-doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
+The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a
+packing doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
 
-Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or text of
-DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of `material`; packings and
-states of collisions, RUN/states/NNNNNN.npz, say their own.
-"""
+Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or
+text of DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of
+`material`; packings and states of collisions, RUN/states/NNNNNN.npz, say their own."""
 
 import os
 import signal
@@ -46,13 +45,6 @@ class MadeParameters(AggregateParameters):
     packing: str = parameter(
         "cpe", one_of(MADE), "close-packed and extracted, cluster-cluster or particle-cluster aggregation"
     )
-
-
-def make_packing(file, parameters, index):
-    """Make aggregate number index, save it, print one line about it."""
-    constants = materials.pair_constants(parameters)
-    materials.require_small_contacts(constants)
-    _save(file, make(parameters, constants["equilibriumOverlap"], index))
 
 
 def _save(file, packing):
@@ -100,7 +92,8 @@ def main(arguments):
     for file in files:
         if not file.endswith(".npz"):
             raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
-        if require_output(file, inputs=[texts["from"]] if "from" in texts else ()) and not packings.is_packing(file):
+        require_output(file, inputs=[texts["from"]] if "from" in texts else ())
+        if os.path.exists(file) and not packings.is_packing(file):
             raise ParameterError(f"{file}: is there, and no packing; must be a new file, or a packing to replace")
     for name in WITHOUT_EFFECT:
         if name in texts:
@@ -115,8 +108,10 @@ def main(arguments):
         if name not in MadeParameters.columns():
             raise unknown(name, names)
     parameters = MadeParameters.parse(texts)
+    constants = materials.pair_constants(parameters)
+    materials.require_small_contacts(constants)
     for index, file in enumerate(files):
-        make_packing(file, parameters, index)
+        _save(file, make(parameters, constants["equilibriumOverlap"], index))
     return 0
 
 

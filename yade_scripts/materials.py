@@ -88,12 +88,24 @@ class GrainParameters(Parameters):
 
 
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
-    """{name: value} of a contact of two of these grains (SI), by the plugin's names, where no YADE runs.
+    """Constants of a contact of two grains, where no YADE runs; a run takes them from the plugin, which a test
+    compares.
 
-    grains: anything with the attributes of Material, viscoelasticTime [s] if there is drag, and slidingStiffnessFactor
-    where it is not 1; radii: of the two [m], both grainRadius when left out. With a neck, under 'bond', those of a bond
-    of two grains of grainRadius. A run takes the constants from the plugin; a test holds the two together. Sources:
-    analysis.theory.
+    Parameters
+    ----------
+    grains : object
+        Anything with the attributes of Material, viscoelasticTime [s] if there is drag, and slidingStiffnessFactor
+        where it is not 1.
+    radii : (float, float), optional
+        Of the two [m]; both grainRadius if left out.
+    neck, linearDamping : float
+        Of sintered grains, beta; k_n.
+
+    Returns
+    -------
+    dict
+        {name: value} by the plugin's names, SI (analysis.theory); with a neck, under "bond", those of a bond of two
+        grains of grainRadius.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]

@@ -1,8 +1,8 @@
 """The limits of a run's time step, and of the number of steps.
 
-Steps are in units of t0 (Kataoka et al. 2013, eq 2; `timeUnit`). constants: {name: value} of a contact of two grains, as the plugin's
-pairConstants or materials.pair_constants give them, with the constants of a bond under "bond" where grains are sintered.
-"""
+Steps are in units of t0 (Kataoka et al. 2013, eq 2; `timeUnit`). constants: {name: value} of a contact of two grains,
+as the plugin's pairConstants or materials.pair_constants give them, with the constants of a bond under "bond" where
+grains are sintered."""
 
 import math
 
@@ -11,7 +11,8 @@ from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"
-# The leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag (measured).
+# The leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag
+# (measured).
 STABLE_STEP = 0.4
 SAFETY = STABLE_STEP / 0.5
 # An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.
@@ -23,9 +24,9 @@ def step_limit(constants, filling):
 
     filling: of a CPE packing, or of one as stiff against turning (equivalent_filling).
 
-    SAFETY times the step at which the first of two vibrations of a CPE packing grows, of contacts or of bonds: all grains turning in
-    phase, or one moving against its neighbours. contact_law/MODEL.md, "What packings allow", has them, and the runs that blew up.
-    """
+    SAFETY times the step at which the first of two vibrations of a CPE packing grows, of contacts or of bonds: all
+    grains turning in phase, or one moving against its neighbours. contact_law/MODEL.md, "What packings allow", has
+    them, and the runs that blew up."""
     mass, contact_radius = 2 * constants["reducedMass"], constants["equilibriumContactRadius"]
     normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # Arakawa et al. (2024), eq 38
     sliding_stiffness = constants["slidingStiffness"]
@@ -53,9 +54,8 @@ def equivalent_filling(packing, filling, planar, constants):
     """Filling factor of the CPE packing in space whose grains meet as much resistance when all turn in phase.
 
     packing: "cpe", "bcca", "bpca" or "file"; filling: of a cpe packing. Of 12 contacts of a site in space two thirds
-    resist, of 6 in a plane all (a fraction of 3/4); of a BCCA or BPCA aggregate four are taken (1/2), which is more than
-    most grains have; a packing from a file may be as dense as the lattice.
-    """
+    resist, of 6 in a plane all (a fraction of 3/4); of a BCCA or BPCA aggregate four are taken (1/2), which is more
+    than most grains have; a packing from a file may be as dense as the lattice."""
     radius, overlap = 2 * constants["reducedRadius"], constants["equilibriumOverlap"]
     full = maximum_filling(radius, overlap)
     if packing in ("bcca", "bpca"):
@@ -70,10 +70,9 @@ def equivalent_filling(packing, filling, planar, constants):
 def limit_of_unlike(grains, constants, radius_range, packing="bpca"):
     """Largest stable stepFraction [t0 of constants] of aggregates of grains of unlike size.
 
-    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]; packing: "bcca", "bpca" or "file". The
-    fastest vibration is that of the smallest grain among the largest ones: its contacts are stiffer than among its own
-    kind.
-    """
+    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]; packing: "bcca", "bpca" or "file".
+    The fastest vibration is that of the smallest grain among the largest ones: its contacts are stiffer than among its
+    own kind."""
     stiffest = pair_constants(grains, radius_range)
     smallest = pair_constants(grains, (radius_range[0], radius_range[0]))
     stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=constants["timeUnit"])

@@ -68,7 +68,8 @@ def test_grains_of_unlike_size(name, make_one):
 
 
 def test_single_pairs_by_hand():
-    """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m + M)."""
+    """Two grains at +-d/2: r_gyr = d/2; unlike ones with masses m, M at the distance d: r_gyr = d (m M)^(1/2)/(m +
+    M)."""
     for first, second in ((1e-7, 1e-7), (1e-7, 3e-7), (0.5e-7, 4e-7)):
         expected = first + second - pair_constants(ICE, (first, second))["equilibriumOverlap"]
         assert touching_distance(first, second, RADIUS, OVERLAP) == pytest.approx(expected, rel=1e-13)

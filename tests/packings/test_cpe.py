@@ -74,10 +74,11 @@ def test_sites_are_those_of_a_face_centred_cubic_lattice():
 
 @pytest.mark.parametrize("filling", [0.15, 0.4, 0.6])
 def test_mean_coordination_of_inner_grains(filling):
-    """12 filling/maximum (A24 eq 39) to 3.9 standard errors of 40 seeds, of grains whose neighbouring sites all lie inside.
+    """12 filling/maximum (A24 eq 39) to 3.9 standard errors of 40 seeds, of grains whose neighbouring sites all lie
+    inside.
 
-    One aggregate's mean scatters by at least sqrt(24 p (1-p)^2/N), p = filling/maximum, for sites occupied independently.
-    """
+    One aggregate's mean scatters by at least sqrt(24 p (1-p)^2/N), p = filling/maximum, for sites occupied
+    independently."""
     expected = 12 * filling / packings.maximum_filling(RADIUS, OVERLAP)
     means = []
     for seed in range(40):

@@ -126,8 +126,8 @@ def test_a_planar_run_takes_planar_packings_only(tmp_path):
 
 @pytest.mark.parametrize("packing", [dict(radius=4), dict(packing="bpca", grains=20), dict(packing="bcca", grains=20)])
 def test_what_was_made_for_softer_grains_is_refused_and_loose_on_purpose_is_not(tmp_path, packing):
-    """Contacts of ice are at a fifth of the overlap that grains ten times as soft have at rest: pulled together, those of a
-    cpe packing released 13 K(0) at 3 m/s."""
+    """Contacts of ice are at a fifth of the overlap that grains ten times as soft have at rest: pulled together, those
+    of a cpe packing released 13 K(0) at 3 m/s."""
     path = str(tmp_path / "a.npz")
     packings.save(path, make(CollisionParameters.parse(packing), OVERLAP, 0))
     soft = CollisionParameters.parse(dict(packing="file", file=path, young=0.7e9))

@@ -17,7 +17,8 @@ from yade_scripts.parameters import ParameterError
 
 
 def pressed_lattice(noise=0.0):
-    """A simple cubic lattice in its cell, neighbours closer than at rest by a strain of 0.004, sites moved by `noise` [m]."""
+    """A simple cubic lattice in its cell, neighbours closer than at rest by a strain of 0.004, sites moved by `noise`
+    [m]."""
     side, edge = 8, APART * (1 - 0.004)
     site, pairs = cubic_lattice(side)
     position = edge * site + noise * np.random.default_rng(1).normal(size=site.shape)

@@ -162,7 +162,7 @@ WRONG = [
     (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file"),
     (WITH_RADII.format("0.1"), UM, "radius = 0.1: {path} has radii of its own; must be left out"),
     (WITH_RADII.format("-1"), dict(unit="um"), "radius of grain 1 is -1; must be > 0"),
-    ("2\nno grains\nC 0 0 0\n", UM, "ends within the 1 rows after line 3"),
+    ("2\nno grains\nC 0 0 0\n", UM, "1 rows of numbers; must be 2"),
     (DUMP.format(n="all"), UM, "line 4: 'all' grains"),
     (DUMP.format(n=1) + "ITEM: ATOMS id xs ys zs\n1 0 0 0\n", UM, "no x y z among its columns id, xs, ys, zs"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9, as it says"),

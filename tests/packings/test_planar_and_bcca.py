@@ -51,7 +51,8 @@ def test_bcca_is_one_cluster_whose_grains_touch_and_never_overlap_more(planar, g
 
 @pytest.mark.parametrize("planar", [False, True])
 def test_clusters_meet_anywhere_on_their_cross_section(planar):
-    """Two grains, along x: the square of the impact parameter is uniform in space, itself in a plane; of fixed seeds."""
+    """Two grains, along x: the square of the impact parameter is uniform in space, itself in a plane; of fixed
+    seeds."""
     apart = np.array(
         [np.diff(bcca(2, RADIUS, OVERLAP, seed, planar=planar).position, axis=0)[0] for seed in range(500)]
     )
@@ -61,8 +62,8 @@ def test_clusters_meet_anywhere_on_their_cross_section(planar):
 
 @pytest.mark.parametrize("planar, dimension", [(True, 1.5), (False, 1.9)])
 def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
-    """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the logarithm
-    over 12 aggregates at 64 and 1024 grains; within 4 standard errors and 0.15 (small clusters)."""
+    """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the
+    logarithm over 12 aggregates at 64 and 1024 grains; within 4 standard errors and 0.15 (small clusters)."""
 
     def sizes(grains):
         made = [bcca(grains, 1.0, 0.0, seed, planar=planar) for seed in range(12)]

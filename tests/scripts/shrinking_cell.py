@@ -1,5 +1,6 @@
-"""A kind of run of a user's own: 27 grains on a cubic lattice in a periodic cell that shrinks, whose boundaries do many times the work that the contacts
-held at the start. `yade -n -x shrinking_cell.py rate=3e-4`; YADE runs it, and tests import SHRINK, its path."""
+"""A kind of run of a user's own: 27 grains on a cubic lattice in a periodic cell that shrinks, whose boundaries do many
+times the work that the contacts held at the start. `yade -n -x shrinking_cell.py rate=3e-4`; YADE runs it, and tests
+import SHRINK, its path."""
 
 import os
 import sys

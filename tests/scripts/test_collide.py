@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, states
 
-from analysis.runs.format import CHANNELS, COLLISION
+from analysis.runs.format import CHANNELS, COLLISION, FORMAT
 from analysis.runs.status import verify_run
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
@@ -22,24 +22,14 @@ def run(tmp_path_factory):
     return folder / "run"
 
 
-ABOUT = """format files kind parameters derived endedBy versions commit seed hardware wallTime outcome timeReached"""
-NOT_GIVEN = """projectileGrains projectileFile impactStepFraction file sizeRatio sizeFraction sizeSpread tolerance"""
-DERIVED = """young poisson surfaceEnergy density criticalRolling viscoelasticTime grainRadius grainMass equilibriumContactRadius
-equilibriumOverlap pullOffOverlap pullOffForce timeUnit timeStep stepChoice steps aggregateRadius grainsPerAggregate firstTouch
-targetGrains targetGyrationRadius targetCharacteristicRadius projectileGrains projectileGyrationRadius projectileCharacteristicRadius"""
-
-
 def test_run_folder_is_complete(run):
     assert sorted(os.listdir(run)) == ["checkpoint", "ended", "history.npz", "run.json", "states"]  # undecided so early
     assert verify_run(run)[0] == []
     about = read_json(run, "run.json")
-    assert set(about) == set(ABOUT.split()) and set(about["derived"]) == set(DERIVED.split())
-    assert (about["format"], about["kind"]) == (4, "collision")
+    assert (about["format"], about["kind"], about["outcome"], about["seed"]) == (FORMAT, "collision", "completed", 1)
     assert list(about["parameters"]) == list(CollisionParameters.columns())
-    assert [name for name, value in about["parameters"].items() if value is None] == NOT_GIVEN.split()
-    assert about["derived"]["stepChoice"] == "as given"
-    assert set(about["versions"]) == {"yade", "python", "numpy", "contact_law"}
-    assert about["outcome"] == "completed" and about["wallTime"] > 0 and about["seed"] == 1
+    assert set(about["versions"]) == {"yade", "python", "numpy", "contact_law"} and about["wallTime"] > 0
+    assert {"timeUnit", "timeStep", "equilibriumOverlap", "aggregateRadius", "firstTouch"} < set(about["derived"])
 
 
 def test_history_has_every_series(run):
@@ -103,8 +93,8 @@ def test_starts_at_rest_within_each_aggregate(run):
 
 @pytest.mark.parametrize("arguments", [("radius=4",), ("packing=bcca", "grains=64")], ids=["cpe", "bcca"])
 def test_slow_aggregates_meet_within_the_default_duration(tmp_path, arguments):
-    """At 3 m/s the approach takes longer than the rest: the duration counts from the first touch. Fluffy aggregates move through each
-    other in it, or come to rest before."""
+    """At 3 m/s the approach takes longer than the rest: the duration counts from the first touch. Fluffy aggregates
+    move through each other in it, or come to rest before."""
     about, history = completed(tmp_path, *arguments, "velocity=3")
     parameters, derived = about["parameters"], about["derived"]
     after = 64.6 * parameters["radius"] * derived["timeUnit"]
@@ -117,22 +107,20 @@ def test_slow_aggregates_meet_within_the_default_duration(tmp_path, arguments):
     assert parameters["filling"] == pytest.approx(parameters["grains"] / parameters["radius"] ** 3, rel=0.02)
 
 
-# What takes YADE, the contact's constants, the machine or the disk to see; test_parameters.py has the rest.
-WRONG = {
-    "filling=0.76": "filling = 0.76: more than the lattice holds; must be at most 0.7519",
-    "neck=0.2 stepFraction=0.2": "stepFraction = 0.2: unstable at this neck, filling and drag; must be at most 0.119 [t0]",
-    "neck=0.123": "neck = 0.123: no thicker than a contact that is not sintered; must be 0 (not sintered), or above 0.1237 and",
-    "filling=0.1 radius=12": "aggregate 0 is in crumbs: its largest piece must hold 10% of its mass",
-    "threads=2 engine=functors": "threads = 2: YADE was started with 1; must be ",
-    "density=1e300 unusual=1": "density = 1e+300 kg/m^3: must be 1e-07 to 2.3e+13 kg/m^3 also with unusual=1",
-    "surfaceEnergy=1e4 unusual=1": "grainRadius = 1e-07: contacts at rest have a radius of ",
-    "table=rows.table:3": "velocity = fast: not a finite number; must be > 0 [m/s]",
-    "table=rows.table:9": "table rows.table:9: no such row; must be a line of 2, 3",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("arguments", WRONG)
-def test_wrong_parameters_give_one_line_and_run_nothing(tmp_path, arguments):
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ("filling=0.76", "filling = 0.76: more than the lattice holds"),
+        ("neck=0.2 stepFraction=0.2", "stepFraction = 0.2: unstable at this neck, filling and drag"),
+        ("neck=0.123", "neck = 0.123: no thicker than a contact that is not sintered"),
+        ("filling=0.1 radius=12", "aggregate 0 is in crumbs"),
+        ("threads=2 engine=functors", "threads = 2: YADE was started with 1"),
+        ("surfaceEnergy=1e4 unusual=1", "grainRadius = 1e-07: contacts at rest have a radius of "),
+        ("table=rows.table:3", "velocity = fast: not a finite number"),
+        ("table=rows.table:9", "table rows.table:9: no such row"),
+    ],
+)
+def test_what_yade_or_the_contact_refuses_gives_one_line_and_runs_nothing(tmp_path, arguments, message):
     (tmp_path / "rows.table").write_text("radius velocity\n4 10\n4 fast\n")
-    assert refusal(collide(tmp_path, *arguments.split())).startswith(f"collide.py: {WRONG[arguments]}")
+    assert refusal(collide(tmp_path, *arguments.split())).startswith(f"collide.py: {message}")
     assert os.listdir(tmp_path) == ["rows.table"]

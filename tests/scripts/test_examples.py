@@ -6,22 +6,12 @@ import re
 import pytest
 from running import TOP, call, messages
 
-EXAMPLES = os.path.join(TOP, "yade_scripts", "examples")
-
 
 def example(name):
-    """The lines that an example prints; it fits a screen."""
-    path = os.path.join(EXAMPLES, name)
-    with open(path) as file:
-        assert len(file.readlines()) <= 60
-    done = call(TOP, "yade", "-n", "-x", path)
+    """What an example prints."""
+    done = call(TOP, "yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "examples", name))
     assert done.returncode == 0 and messages(done) == [], done.stderr
     return done.stdout
-
-
-def test_every_example_is_tested():
-    examples = {name for name in os.listdir(EXAMPLES) if name.endswith(".py")}
-    assert examples == {"cluster.py", "pair.py", "periodic_cell.py"}
 
 
 def test_a_pair_sticks_below_its_velocity_and_parts_above():

@@ -1,4 +1,4 @@
-"""Another kind of run, as one script of a user (shrinking_cell.py): it is run, recorded and studied without a change elsewhere."""
+"""A kind of run that a user adds in one script (shrinking_cell.py) is run, recorded and studied."""
 
 import os
 
@@ -8,7 +8,7 @@ from running import call, messages, read_arrays, read_json, refusal, study
 from shrinking_cell import SHRINK
 
 from analysis import open_run
-from analysis.runs.format import CHANNELS
+from analysis.runs.format import CHANNELS, FORMAT
 
 
 def shrink(folder, *arguments):
@@ -26,7 +26,7 @@ def run(tmp_path_factory):
 def test_its_folder_has_its_series_its_states_the_cell_and_its_ledger_the_work_of_the_boundaries(run):
     """Without that work the run would have been stopped: it is many times the energy of the start."""
     about, history = read_json(run, "run.json"), read_arrays(run, "history.npz")
-    assert (about["format"], about["kind"], about["outcome"]) == (5, "shrink", "completed")
+    assert (about["format"], about["kind"], about["outcome"]) == (FORMAT, "shrink", "completed")
     assert list(about["parameters"])[:2] == ["rate", "duration"] and about["derived"]["spacing"] > 1.98e-7
     assert list(history) == ["time", *CHANNELS, "contacts", "filling"]
     strain = 3e-4 * history["time"] / about["derived"]["timeUnit"]
@@ -43,19 +43,15 @@ def test_its_folder_has_its_series_its_states_the_cell_and_its_ledger_the_work_o
     assert np.abs(total - total[0]).max() < 1e-3 * np.ptp(stored)
 
 
-def test_its_parameters_are_told_and_checked(tmp_path):
-    assert "rate = 0.0003 [1/t0]" in shrink(tmp_path, "--help").stdout
-    for argument, words in {
-        "rate=-1": "rate = -1: must be > 0 [1/t0]",
-        "stepFraction=auto": "stepFraction = auto: not measured for this kind of run; must be a number [t0]",
-        "duration=1e9": "duration = 1e+09: 5.2e+19 steps of 0.1 t0; must be at most 1e+09 steps",
-    }.items():
-        assert refusal(shrink(tmp_path, argument)).startswith(f"shrinking_cell.py: {words}")
+def test_its_parameters_are_checked(tmp_path):
+    assert refusal(shrink(tmp_path, "rate=-1")).startswith("shrinking_cell.py: rate = -1: must be > 0 [1/t0]")
+    assert "stepFraction = auto: not measured for this kind of run" in refusal(shrink(tmp_path, "stepFraction=auto"))
     assert os.listdir(tmp_path) == []
 
 
 def test_a_study_of_two_kinds(run, tmp_path):
-    """Rows with !SCRIPT are of its kind, those without collisions; an ended run of the kind is skipped, another is not."""
+    """Rows with !SCRIPT are of its kind, those without collisions; an ended run of the kind is skipped, another is
+    not."""
     os.symlink(SHRINK, tmp_path / "shrink.py")
     (tmp_path / "both.table").write_text(
         "description !SCRIPT   rate  radius velocity duration out\n"
@@ -69,9 +65,8 @@ def test_a_study_of_two_kinds(run, tmp_path):
     done = study(tmp_path, "both.table", "-j", "2")
     assert done.returncode == 1
     script, differs = done.stderr.splitlines()
-    assert script == "study.py: nothing: line 4 of both.table: none.py: no such script; the other rows are run"
-    assert differs.startswith(f"study.py: other: {run}x: holds an ended run with rate = 0.0003, not 1e-4; must be ")
-    assert done.stdout.splitlines()[-1].startswith("both: 5 rows, 3 done, 2 failed; 1 undecided (longer: collide.py ")
+    assert "none.py: no such script" in script and "holds an ended run with rate = 0.0003, not 1e-4" in differs
+    assert done.stdout.splitlines()[-1].startswith("both: 5 rows, 3 done, 2 failed; 1 undecided")
     assert open_run(run).parameters["rate"] == 3e-4  # as it was
     kinds = {name: read_json(tmp_path, "runs", name, "run.json")["kind"] for name in ("cell", "collision")}
     assert kinds == {"cell": "shrink", "collision": "collision"}

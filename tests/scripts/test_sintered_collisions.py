@@ -1,4 +1,4 @@
-"""collide.py with necks and in a plane: the columns neck and planar, packing bcca, contact_bonded, the channel bondBreaking."""
+"""Sintered collisions in a plane: bonds break, by mode; the ledger has bondBreaking, and closes."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,8 @@ def test_ledger_has_bond_breaking_and_closes_and_run_json_tells_of_the_bonds(run
 
 
 def test_bonds_lower_the_stable_step():
-    """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any neck."""
+    """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any
+    neck."""
     for neck, blew_up in ((0.2, 0.15), (0.5, 0.17), (0.7, 0.18)):
         limit = stability.step_limit(pair_constants(KIND.parse({"neck": neck}), neck=neck), 0.4)
         assert 0.1 < limit < 0.9 * blew_up

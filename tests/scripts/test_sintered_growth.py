@@ -31,13 +31,6 @@ def test_a_growth_that_does_not_stick_says_so(tmp_path, monkeypatch):
         sintered_growth.grow(Grown(50.0, 1))
 
 
-def test_aggregates_grow_in_space_too(small_growth):
-    grown = Grown(3.0, 7, planar=0)
-    sintered_growth.grow(grown)
-    packing = load(grown.file(0))
-    assert 29 <= packing.grains <= 32 and np.ptp(packing.position[:, 2]) > 2e-7
-
-
 def test_a_small_table_from_growth_to_report(small_growth, tmp_path):
     """Aggregates of 32 grains grown at 3 m/s, sintered, collided, and reported with the V_g that they grew at."""
     grown = Grown(3.0, 7)

@@ -72,7 +72,7 @@ def test_tables_are_read_as_yade_reads_them(tmp_path, paths):
 @pytest.mark.in_yade
 def test_the_step_of_every_row_is_stable(paths):
     """What runs refuse of grains, necks and steps before packings are made."""
-    from yade_scripts.experiments import collision, compression
+    from yade_scripts.experiments import collision_step, compression
     from yade_scripts.parameters import ParameterError
     from yade_scripts.run.scene import pair_constants
 
@@ -86,8 +86,8 @@ def test_the_step_of_every_row_is_stable(paths):
         if alike in known:
             continue
         known.add(alike)
-        experiment = compression if row.kind.name == COMPRESSION.name else collision
-        own = {"neck": p.neck} if experiment is collision else {"linearDamping": p.linearDamping}
+        experiment = compression if row.kind.name == COMPRESSION.name else collision_step
+        own = {"neck": p.neck} if experiment is collision_step else {"linearDamping": p.linearDamping}
         try:
             experiment.complete(p, pair_constants(p, **own), 1)
         except ParameterError as error:
@@ -96,8 +96,8 @@ def test_the_step_of_every_row_is_stable(paths):
 
 
 def test_elastoplastic_holds_the_papers_runs(runs):
-    """A24 section 3 and the captions of Figs 5 to 9; desk has some of each size, every velocity, both fillings. 12.5 ns per
-    grain radius from the start, the slowest 1000 ns."""
+    """A24 section 3 and the captions of Figs 5 to 9; desk has some of each size, every velocity, both fillings. 12.5 ns
+    per grain radius from the start, the slowest 1000 ns."""
     full, desk = runs("elastoplastic-full").values(), runs("elastoplastic-desk").values()
     scenes = {(p.filling, p.radius, p.velocity) for p in full}
     assert len(scenes) == 2 * (5 + 2 * 7) and len(full) == 10 * len(scenes) and {p.stepFraction for p in full} == {0.1}
@@ -111,7 +111,8 @@ def test_elastoplastic_holds_the_papers_runs(runs):
 
 
 def test_viscous_holds_the_papers_runs(runs):
-    """A22 section 2.4: 13 B_off^2, 8 velocities, 4 T_vis; desk has that grid with several seeds of smaller aggregates."""
+    """A22 section 2.4: 13 B_off^2, 8 velocities, 4 T_vis; desk has that grid with several seeds of smaller
+    aggregates."""
     offsets = lambda p: round(p.impact**2 * 12, 9)
     full, desk, predicted = (runs(f"viscous-{size}").values() for size in ("full", "desk", "prediction"))
     scenes = {(offsets(p), p.velocity, p.viscoelasticTime) for p in full}
@@ -156,8 +157,8 @@ def test_sintered_beyond_stands_beside_the_desks_runs(runs):
 
 
 def test_rows_of_the_atlas_are_the_same_in_every_size():
-    """A tenth is held out, and not chosen, and a tenth of silicate, of every structure a quarter; sizes, mass ratios and
-    steps are within their limits."""
+    """A tenth is held out, and not chosen, and a tenth of silicate, of every structure a quarter; sizes, mass ratios
+    and steps are within their limits."""
     scenes = atlas.scenes(4000)
     assert scenes[:500] == atlas.scenes(500) and len({scene.seed for scene in scenes}) == 4000
     assert sum(scene.held for scene in scenes) == 400 and sum(scene.material == "silicate" for scene in scenes) == 400

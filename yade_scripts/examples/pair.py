@@ -12,7 +12,8 @@ import contact_law  # makes JKRMat and the other classes known
 RADIUS = 1e-7  # m
 ice = JKRMat(young=7e9, poisson=0.25, density=1000, surfaceEnergy=0.1, criticalRolling=0.8e-9)
 constants = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice, RADIUS, ice, RADIUS)
-# What a contact takes when it forms and breaks: (8/15 2^(2/3) + 4/45) F_c delta_c (Arakawa et al. 2022, eqs 9, 10), all of m* v^2/2
+# What a contact takes when it forms and breaks: (8/15 2^(2/3) + 4/45) F_c delta_c (Arakawa et al. 2022, eqs 9, 10), all
+# of m* v^2/2
 lost = (8 / 15 * 2 ** (2 / 3) + 4 / 45) * constants["pullOffForce"] * constants["pullOffOverlap"]
 sticking = (2 * lost / constants["reducedMass"]) ** 0.5
 

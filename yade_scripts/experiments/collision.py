@@ -1,4 +1,7 @@
-"""Collisions of two aggregates: parameters, scene, series, estimate (A24 section 3; A22 section 2.4; S17)."""
+"""Collisions of two aggregates, or of one and a plate (A24 section 3; A22 section 2.4; S17): parameters, scene, series.
+
+In a collision with a plate (target=wall) the plate is at rest at x = 0, and the aggregate comes along -x.
+"""
 
 from dataclasses import dataclass, replace
 from math import sqrt
@@ -6,35 +9,37 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, rebound_time
-from analysis.measures.plate import has_plate
+from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
+from analysis.measures.of_run import outcome_of_run
+from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.files import SUM
+from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING
 from yade_scripts import packings, stability
-from yade_scripts.experiments import ending, impact_step, plate
-from yade_scripts.experiments.collision_step import (
-    LARGEST_NECK,
-    complete,
-    expected_step,
-    reason_of_step,
-    require_sintered,
-    require_step_of_files,
-)
-from yade_scripts.experiments.plate import AGGREGATE, WALL
+from yade_scripts.experiments import collision_step
+from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import EQUAL, MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
 from yade_scripts.packings.files import sum_of_file
-from yade_scripts.packings.packing import PackingError
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
-WAY = 4  # radii of the larger aggregate, that aggregates which are not close-packed move at `velocity` in the default duration
+AGGREGATE, WALL = "aggregate", "wall"  # targets
+AXIS = 0  # across a plate
+NOT_WITH_A_PLATE = {
+    "projectileGrains": "the aggregate has grains",
+    "projectileFile": "the aggregate is of file",
+    "impact": "it meets the plate at right angles",
+    "neck": "there are no sintered bonds to plates",
+}
+WAY = 4  # radii of the larger aggregate that fluffy ones move at `velocity` in the default duration
 # At 3e3 m/s BCCA aggregates of ice broke down with the default step, at 2e3 they did not.
 VELOCITY = Usual(1e-6, 1e3, "thermal motion of aggregates to a third of sound in ice")
-# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL breaking energies a grain most stick and end REST times rebound_time()
-# after the touch; from ten times that on most take all of their duration.
+CHECKS = 100  # times in a run that it is looked whether pieces are apart
+# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL breaking energies a grain most stick and end REST times
+# rebound_time() after the touch; from ten times that on most take all of their duration.
 RESTFUL, REST = 0.05, 2.0
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
@@ -47,12 +52,14 @@ class CollisionParameters(AggregateParameters, RunParameters):
     target: str = parameter(
         AGGREGATE,
         one_of([AGGREGATE, WALL]),
-        "what one aggregate meets: another one, or a plate of the grains' material at rest, which it meets at right angles",
+        "what one aggregate meets: another one, or a plate of the grains' material at rest, which it meets at right "
+        "angles",
     )
     impact: float = parameter(
         0.0,
         between(0, 1),
-        "impact parameter B_off in units of the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii)",
+        "impact parameter B_off in units of the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' "
+        "radii)",
         "1",
     )
     projectileGrains: int | None = parameter(
@@ -75,14 +82,17 @@ class CollisionParameters(AggregateParameters, RunParameters):
     duration: float | None = parameter(
         None,
         POSITIVE,
-        f"time that is simulated (until the first touch, and {REBOUND_PER_RADIUS} t0 per grain radius of the aggregates' "
-        f"radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii at `velocity`)",
+        f"time that is simulated (until the first touch, and {REBOUND_PER_RADIUS} t0 per grain radius of the "
+        "aggregates' "
+        f"radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii at "
+        "`velocity`)",
         "s",
     )
     impactStepFraction: float | None = parameter(
         None,
         POSITIVE,
-        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start to the "
+        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start "
+        "to the "
         "time of the first touch and of four radii of the larger one (stepFraction all the time)",
         "t0",
     )
@@ -90,31 +100,34 @@ class CollisionParameters(AggregateParameters, RunParameters):
         None,
         SWITCH,
         "1: the run ends earlier than duration as soon as no pieces can meet until then (straight lines of the spheres "
-        "around them) and no piece is in motion within itself that could break it (1 where no duration is given, else 0)",
+        "around them) and no piece is in motion within itself that could break it (1 where no duration is given, "
+        "else 0)",
     )
 
+    ONLY_WITH = {**AggregateParameters.ONLY_WITH, "projectileGrains": tuple(MOST_GROWN), "projectileFile": ("file",)}
+
     def filled_in(self):
-        """As AggregateParameters, with the projectile's size."""
+        """As AggregateParameters, with endWhenApart; refuses what doesn't go together."""
         found = super().filled_in()
-        for name, packings_with_it in (("projectileGrains", MOST_GROWN), ("projectileFile", ("file",))):
-            value = getattr(found, name)
-            if value is not None and found.packing not in packings_with_it:
-                raise ParameterError(f"{name} = {value}: given with packing = {found.packing}; must be left out")
-        if found.target == WALL:
-            plate.require_usable(found)
-        impact_step.require_usable(found)
-        if found.endWhenApart is None:
-            found = found.changed(endWhenApart=int(found.duration is None))
+        for name, reason in NOT_WITH_A_PLATE.items() if found.target == WALL else ():
+            if value := getattr(found, name):
+                raise ParameterError(f"{name} = {value}: given with target = {WALL}; must be left out: {reason}")
+        collision_step.require_usable(found)
         if found.projectileGrains is not None:
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
-        if found.neck and found.sizes != EQUAL:
-            raise ParameterError(f"sizes = {found.sizes}: given with neck = {found.neck:g}; must be {EQUAL}")
-        if found.neck and found.initialOverlap != 1:
-            raise ParameterError(
-                f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds start at rest"
-            )
-        if found.neck and found.packing != "file":  # a file may say its material itself
-            require_sintered(found.neck, pair_constants(found))
+        if found.neck:
+            if found.sizes != EQUAL:
+                raise ParameterError(f"sizes = {found.sizes}: given with neck = {found.neck:g}; must be {EQUAL}")
+            if found.initialOverlap != 1:
+                raise ParameterError(
+                    f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds "
+                    "start "
+                    "at rest"
+                )
+            if found.packing != "file":  # a file may say its material itself
+                collision_step.require_sintered(found.neck, pair_constants(found))
+        if found.endWhenApart is None:
+            found = found.changed(endWhenApart=int(found.duration is None))
         return found
 
     def of_projectile(self):
@@ -122,7 +135,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
         return self.changed(grains=self.projectileGrains or self.grains, file=self.projectileFile or self.file)
 
     def title(self):
-        """collide-ice-f0.4-R20-v3.162-s1, collide-ice-bcca-N1024-v3.162-s1 or collide-wall-ice-..., and the names of what is in it."""
+        """collide-ice-f0.4-R20-v3.162-s1, collide-ice-bcca-N1024-v3.162-s1 ..., and the names of what is in it."""
         size = f"f{self.filling:g}-R{self.radius:.4g}" if self.packing == "cpe" else self.packing
         size += f"-N{self.grains}" if self.is_grown else ""
         target = f"{WALL}-" if self.target == WALL else ""
@@ -130,13 +143,84 @@ class CollisionParameters(AggregateParameters, RunParameters):
         return f"collide-{target}{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
 
 
-def default_duration(parameters, radius, time_unit, touch):
-    """Duration [s] of a run that gives none: radius of the larger aggregate in grain radii, t0 [s], time of the first touch [s].
+# ---- the scene ----
 
-    Close-packed aggregates rebound within rebound_time(); fluffy ones move through each other first.
+
+def prepare(parameters, threads):
+    """The Scene of a collision; called within YADE. Raises ParameterError and PackingError."""
+    from yade_scripts.run import scene as yade_scene
+
+    constants = yade_scene.pair_constants(parameters, parameters.neck)
+    parameters = collision_step.complete(parameters, constants, threads)
+    parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
+    for packing in pair:
+        packings.require_connected(packing)
+    collision_step.require_step_of_files(parameters, constants, pair)
+    touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
+    parameters = with_duration(parameters, constants["timeUnit"], touch)
+    aggregate_radius = parameters.radius * parameters.grainRadius
+    controls, reason = [], collision_step.reason(parameters, constants)
+    if parameters.impactStepFraction is not None:
+        until = (touch or 0.0) + collision_step.duration_of_impact(parameters)
+        controls.append(collision_step.control(parameters, until))
+        reason = collision_step.reason_of_impact(parameters, until)
+    if parameters.endWhenApart:
+        controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
+    material = yade_scene.material_of(parameters)
+
+    def build():
+        yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar))
+        if parameters.target == WALL:
+            yade_scene.add_plane(AXIS, 0.0, material)
+
+    resting = {RESTING: np.nan} if parameters.endWhenApart else {}
+    return Scene(
+        parameters=parameters,
+        constants=constants,
+        derived={**_sizes(aggregate_radius, pair, parameters), **({} if touch is None else {"firstTouch": touch})},
+        aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
+        build=build,
+        series=lambda state: {**series(state, aggregate_radius), **resting},
+        law={"neck": parameters.neck},
+        step_choice=reason,
+        control=lambda recorder, state: any([control(recorder, state) for control in controls]),
+    )
+
+
+def place(parameters, overlap):
+    """Aggregates in their places.
+
+    Parameters
+    ----------
+    parameters : CollisionParameters
+    overlap : float
+        Of touching grains [m].
+
+    Returns
+    -------
+    parameters : CollisionParameters
+        With radius, filling and grains of the larger aggregate where it is not a CPE one.
+    packings : list of Packing
+        Target and projectile, or the one that meets the plate.
+    velocities : list of (3,) array
+        [m/s]
     """
-    way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
-    return touch + max(rebound_time(radius, time_unit), way)
+    if parameters.target == WALL:
+        packing = make(parameters, overlap, 0)
+        if parameters.packing != "cpe":
+            parameters = _with_size(parameters, [packing])
+        gap = START_GAP * packing.radius.max() - (packing.position[:, AXIS] - packing.radius).min()
+        placed = packings.moved(packing, (gap, 0.0, 0.0))
+        return parameters, [placed], [np.array([-parameters.velocity, 0.0, 0.0])]
+    pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
+    if parameters.packing == "cpe":
+        where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
+        pair, velocities = [packings.moved(p, centre) for p, (centre, _) in zip(pair, where)], [v for _, v in where]
+    else:
+        parameters = _with_size(parameters, pair)
+        pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
+    packings.require_apart(*pair)
+    return parameters, pair, velocities
 
 
 def placements(radius, grain_radius, velocity, impact):
@@ -149,74 +233,6 @@ def placements(radius, grain_radius, velocity, impact):
     centre = np.array([reach, impact * reach, 0.0])
     half = np.array([velocity / 2, 0.0, 0.0])
     return (-centre, half), (centre, -half)
-
-
-def prepare(parameters, threads):
-    """The Scene of a collision; called within YADE. Raises ParameterError and PackingError."""
-    from yade_scripts.run import scene as yade_scene
-
-    constants = yade_scene.pair_constants(parameters, parameters.neck)
-    parameters = complete(parameters, constants, threads)
-    parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
-    for packing in pair:
-        packings.require_connected(packing)
-    require_step_of_files(parameters, constants, pair)
-    touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
-    parameters = with_duration(parameters, constants["timeUnit"], touch)
-    aggregate_radius = parameters.radius * parameters.grainRadius
-    controls, reason = [], reason_of_step(parameters, constants)
-    if parameters.impactStepFraction is not None:
-        until = (touch or 0.0) + impact_step.duration(parameters)
-        controls.append(impact_step.control(parameters, until))
-        reason = impact_step.reason(parameters, until)
-    if parameters.endWhenApart:
-        controls.append(ending.when_apart(parameters, constants, aggregate_radius, touch))
-    material = yade_scene.material_of(parameters)
-    return Scene(
-        parameters=parameters,
-        constants=constants,
-        derived={**_sizes(aggregate_radius, pair, parameters), **({} if touch is None else {"firstTouch": touch})},
-        aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
-        build=lambda: _build(parameters, pair, velocities, material),
-        series=lambda state: {
-            **series(state, aggregate_radius),
-            **({RESTING: np.nan} if parameters.endWhenApart else {}),
-        },
-        law={"neck": parameters.neck},
-        step_choice=reason,
-        control=lambda recorder, state: any([control(recorder, state) for control in controls]),
-    )
-
-
-def _build(parameters, pair, velocities, material):
-    from yade_scripts.run import scene as yade_scene
-
-    yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar))
-    if parameters.target == WALL:
-        yade_scene.add_plane(plate.AXIS, 0.0, material)
-
-
-def place(parameters, overlap):
-    """(parameters with the size of the aggregates, the two packings in their places, their velocities; of a collision with a
-    plate, which is at x = 0, the one that comes along -x).
-
-    overlap: of touching grains [m]. Radius and filling of other than CPE aggregates are of the larger of the two.
-    """
-    if parameters.target == WALL:
-        packing = make(parameters, overlap, 0)
-        if parameters.packing != "cpe":
-            parameters = _with_size(parameters, [packing])
-        return parameters, *plate.placed(packing, parameters.velocity)
-    pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
-    if parameters.packing == "cpe":
-        where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
-        pair = [packings.moved(packing, centre) for packing, (centre, _) in zip(pair, where)]
-        packings.require_apart(*pair)
-        return parameters, pair, [velocity for _, velocity in where]
-    parameters = _with_size(parameters, pair)
-    pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
-    packings.require_apart(*pair)
-    return parameters, pair, velocities
 
 
 def _with_size(parameters, pair):
@@ -245,9 +261,28 @@ def _sizes(aggregate_radius, pair, parameters):
     return found
 
 
+def _time_of_touch(parameters, pair, velocities, bond):
+    """Time [s] until grains of the two, or of one and the plate, first touch, or None; grains that sintered have
+    shrunk."""
+    if parameters.target == WALL:
+        return float((pair[0].position[:, AXIS] - pair[0].radius).min() / parameters.velocity)
+    if bond:
+        pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
+    return first_touch(*pair, velocities[1] - velocities[0])
+
+
+def default_duration(parameters, radius, time_unit, touch):
+    """Duration [s] of a run that gives none.
+
+    Close-packed aggregates rebound within rebound_time(); fluffy ones move through each other first. radius: of the
+    larger aggregate in grain radii; time_unit: t0 [s]; touch: time of the first touch [s].
+    """
+    way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
+    return touch + max(rebound_time(radius, time_unit), way)
+
+
 def with_duration(parameters, time_unit, touch):
-    """The parameters with a duration; touch: time of the first touch [s], or None: aggregates that pass each other do so from the start
-    on. Raises ParameterError."""
+    """The parameters with a duration; touch: time of the first touch [s], None for aggregates that pass each other."""
     if parameters.duration is not None:
         return parameters
     duration = default_duration(parameters, parameters.radius, time_unit, touch or 0.0)
@@ -256,18 +291,46 @@ def with_duration(parameters, time_unit, touch):
 
 
 def series(state, aggregate_radius):
-    """{name: value} of a collision's own series; state: as contact_law.snapshot(), with `aggregate`; R_agg [m]."""
+    """{name: value} of a collision's own series; state: as contact_law.snapshot(), with `aggregate`; R_agg [m].
+
+    With a plate d and v are by the mean distance from it.
+    """
     if has_plate(state):
-        return plate.series(state, aggregate_radius)
+        d, v = aggregate_radius - state["position"][:, AXIS].mean(), -state["velocity"][:, AXIS].mean()
+        return {"d": d, "v": v, "contacts_between": len(state["plane_contacts"])}
     d, v = compression_and_velocity(state["position"][:, 0], state["velocity"][:, 0], aggregate_radius)
     sides = state["aggregate"][state["contact_pairs"]]
     return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
 
 
+def _end_when_apart(parameters, constants, aggregate_radius, touch):
+    """Scene.control of endWhenApart: pieces have been at rest for a while."""
+    known = {**constants, **(constants["bond"] or {}), "aggregateRadius": aggregate_radius}
+    known.update(grainRadius=parameters.grainRadius, density=parameters.density)
+    begin = -np.inf if touch is None else touch
+
+    def control(recorder, state):
+        if not recorder.is_one_of(CHECKS):
+            return False
+        recorder.note(RESTING, float(has_come_to_rest(with_plate(state), known, begin, parameters.duration)))
+        recent = recorder.recent(RESTING, RECENT * (state["time"] - (touch or 0.0)))
+        return bool(np.all(recent[np.isfinite(recent)]))
+
+    return control
+
+
+def why_undecided(folder):
+    """Why the outcome of the run in a folder is not decided (analysis.measures.decided), or None."""
+    return outcome_of_run(open_run(folder)).why_undecided
+
+
+# ---- what is known without a run ----
+
+
 def estimate(parameters):
     """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
     constants = pair_constants(parameters, neck=parameters.neck)
-    planar = bool(parameters.planar)
+    planar, time_unit = bool(parameters.planar), constants["timeUnit"]
     grains = _grain_numbers(parameters)
     if parameters.packing == "file":
         neighbours = NEIGHBOURS / 2
@@ -277,25 +340,21 @@ def estimate(parameters):
         full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
         neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
     radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
-    duration = parameters.duration
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
-    if duration is None:
-        duration = default_duration(parameters, radius, constants["timeUnit"], touch)
-    end = duration
-    if (
-        parameters.endWhenApart
-        and _energy_of_grain(parameters, grains, constants) < RESTFUL * (1 - parameters.impact) ** 2
-    ):
-        end = min(duration, touch + REST * rebound_time(radius, constants["timeUnit"]))
-    steps = duration / constants["timeUnit"] / expected_step(parameters, constants)
+    end = duration = parameters.duration or default_duration(parameters, radius, time_unit, touch)
+    restful = RESTFUL * (1 - parameters.impact) ** 2
+    if parameters.endWhenApart and _energy_of_grain(parameters, grains, constants) < restful:
+        end = min(duration, touch + REST * rebound_time(radius, time_unit))
+    steps = duration / time_unit / collision_step.expected(parameters, constants)
     if parameters.impactStepFraction is not None:
-        steps += impact_step.more_steps(parameters.changed(radius=radius), touch, duration, constants["timeUnit"])
+        steps += collision_step.more_steps(parameters.changed(radius=radius), touch, duration, time_unit)
     share = end / duration
     return Estimate(sum(grains), sum(grains) * neighbours / 2, share * steps, share)
 
 
 def expected(parameters, run):
-    """What a run's run.json should hold of size and duration where the parameters leave them open; and of files that have changed since.
+    """What a run's run.json should hold of size and duration where the parameters leave them open; and of files that
+    have changed since.
 
     Runs of format 1 didn't count the time until the first touch, and aggregates that pass each other have none.
     """
@@ -313,15 +372,6 @@ def expected(parameters, run):
     return found
 
 
-def _time_of_touch(parameters, pair, velocities, bond):
-    """Time [s] until grains of the two aggregates, or of one and the plate, first touch, or None; grains that sintered have shrunk."""
-    if parameters.target == WALL:
-        return plate.time_of_touch(pair[0], parameters.velocity)
-    if bond:
-        pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
-    return first_touch(*pair, velocities[1] - velocities[0])
-
-
 def _grain_numbers(parameters):
     """Grains of the aggregates; of files that can't be read, which the run will say, as if they held one each."""
     of = (parameters,) if parameters.target == WALL else (parameters, parameters.of_projectile())
@@ -329,7 +379,7 @@ def _grain_numbers(parameters):
         return tuple(p.grains for p in of)
     try:
         return tuple(packings.load(p.file).grains for p in of)
-    except PackingError:
+    except packings.PackingError:
         return len(of) * (1,)
 
 
@@ -357,4 +407,4 @@ def _typical_way(parameters):
     return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 
 
-KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, ending.why_undecided)
+KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, why_undecided)

@@ -1,17 +1,19 @@
-"""Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening (K13 section 2), or of a layer under a piston:
-parameters, scene, series, estimate."""
+"""Static compression of a BCCA cluster in a shrinking periodic cell, and its loosening (K13 section 2), or of a layer
+between two plates, of which the upper one comes down (boundary=walls): parameters, scene, series.
+
+Between walls the sides are periodic and stay as they are, so that the layer is one of a wide cake; the cell is so high
+that nothing meets its images across the plates. The filling factor is that between the plates, the pressure the mean of
+the forces on both over their area."""
 
 from dataclasses import dataclass
 from math import log, pi
 
 import numpy as np
 
-from analysis.measures.periodic_cell import contact_pressure, filling_factor, kinetic_pressure
+from analysis.measures.periodic_cell import AVERAGED, contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION
 from yade_scripts import packings, stability, step_choice
-from yade_scripts.experiments import piston
 from yade_scripts.experiments.compression_end import (
-    AVERAGED,
     AXES,
     LOOSE,
     Ending,
@@ -23,6 +25,7 @@ from yade_scripts.experiments.compression_end import (
 )
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
+from yade_scripts.packings.ballistic import rbd, square_for
 from yade_scripts.packings.placing import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
@@ -38,6 +41,14 @@ FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillation
 EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
 PERIODIC, WALLS = "periodic", "walls"
 PACKING = {PERIODIC: "bcca", WALLS: "rbd"}
+OF_WALLS = (
+    ("engine", "fused", "only that has plates in periodic cells"),
+    ("stretch", "no", "walls only come together"),
+    ("initialFilling", None, "it is that of the layer"),
+)
+DEPOSITED = 0.15  # filling of a deep layer, which sets the square on which it is grown
+GAP = 0.1  # grain radii between the highest grain and the upper plate at the start
+UP = 2  # axis across the plates
 
 
 @dataclass(frozen=True)
@@ -47,14 +58,16 @@ class CompressionParameters(GrainParameters, RunParameters):
     boundary: str = parameter(
         PERIODIC,
         one_of(list(PACKING)),
-        "what compresses: a periodic cell whose edges shrink; or two plates of the grains' material, of which the lower one "
+        "what compresses: a periodic cell whose edges shrink; or two plates of the grains' material, of which the "
+        "lower one "
         "rests and the upper one comes down, with periodic sides that stay",
     )
     grains: int = parameter(1024, between(2, MOST_GROWN["bcca"]), "grains of the cluster or layer")
     packing: str | None = parameter(
         None,
         one_of(list(PACKING.values())),
-        "how it is made: with boundary = periodic by cluster-cluster aggregation (bcca), between walls by ballistic deposition "
+        "how it is made: with boundary = periodic by cluster-cluster aggregation (bcca), between walls by ballistic "
+        "deposition "
         "on the lower one, as high as wide (rbd)",
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
@@ -68,14 +81,17 @@ class CompressionParameters(GrainParameters, RunParameters):
     initialFilling: float | None = parameter(
         None,
         Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
-        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge; that of the layer between "
-        "walls, where it cannot be given)",
+        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge; that of the "
+        "layer "
+        "between walls, where it cannot be given)",
         "1",
     )
     finalFilling: float | None = parameter(
         None,
         Check(
-            f"> initialFilling and at most that of random close packing ({RANDOM_CLOSE_PACKING:g}, of grains that overlap a little more)",
+            f"> initialFilling and at most that of random close packing ({RANDOM_CLOSE_PACKING:g}, of grains that "
+            "overlap a "
+            "little more)",
             lambda x: 0 < x < 1,
         ),
         f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
@@ -84,7 +100,8 @@ class CompressionParameters(GrainParameters, RunParameters):
     finalPressure: float | None = parameter(
         None,
         POSITIVE,
-        f"pressure at which it ends if that comes first: work on the boundaries over the change of volume, in the last {AVERAGED:g} t0",
+        "pressure at which it ends if that comes first: work on the boundaries over the change of volume, in the last "
+        f"{AVERAGED:g} t0",
         "Pa",
     )
     stretch: str = parameter(
@@ -93,7 +110,8 @@ class CompressionParameters(GrainParameters, RunParameters):
     stretchFilling: float | None = parameter(
         None,
         Check("> 0 and below finalFilling", lambda x: x > 0),
-        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); at finalPressure the cell "
+        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); at finalPressure the "
+        "cell "
         "may be looser already: then it is not stretched",
         "1",
     )
@@ -118,25 +136,19 @@ class CompressionParameters(GrainParameters, RunParameters):
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
-        if self.boundary == WALLS:
-            self._require_of_walls()
+        for name, must, why in OF_WALLS if self.boundary == WALLS else ():
+            if getattr(self, name) != must:
+                raise ParameterError(
+                    f"{name} = {getattr(self, name)}: given with boundary = {WALLS}; must be {must or 'left out'}: "
+                    f"{why}"
+                )
         return super(CompressionParameters, self.changed(packing=packing)).filled_in()
 
     def require_stretched_below(self, final):
-        """Raises ParameterError where the stretching would end at a filling factor of final (None: not known) or above."""
+        """Raises ParameterError where the stretching would end at a filling factor of final (None: not known) or
+        above."""
         if None not in (self.stretchFilling, final) and self.stretchFilling >= final:
             raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: must be below finalFilling = {final:g}")
-
-    def _require_of_walls(self):
-        for name, must, why in (
-            ("engine", "fused", "only that has plates in periodic cells"),
-            ("stretch", "no", "walls only come together"),
-            ("initialFilling", None, "it is that of the layer"),
-        ):
-            if getattr(self, name) != must:
-                raise ParameterError(
-                    f"{name} = {getattr(self, name)}: given with boundary = {WALLS}; must be {must or 'left out'}: {why}"
-                )
 
     @property
     def axes(self):
@@ -152,18 +164,21 @@ def densest(constants):
 
 
 def complete(parameters, constants, threads):
-    """The parameters with what depends on the contact and on YADE's threads; constants: as run.scene.pair_constants()
-    gives them. Raises ParameterError."""
+    """The parameters with what depends on the contact and on YADE's threads.
+
+    constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
+    """
     require_small_contacts(constants)
-    parameters = _with_ends(parameters, constants)
+    parameters = _with_final_filling(parameters, constants)
     limit = stability.step_limit(constants, parameters.finalFilling)
-    if parameters.stepFraction == stability.AUTO:
-        parameters = parameters.changed(stepFraction=_longest_step(parameters, constants, limit))
+    parameters = parameters.changed(stepFraction=_step(parameters, constants, limit))
     stability.require_stable(parameters.stepFraction, limit, "final filling and damping")
     return parameters.with_threads(threads)
 
 
-def _longest_step(parameters, constants, limit):
+def _step(parameters, constants, limit):
+    if parameters.stepFraction != stability.AUTO:
+        return parameters.stepFraction
     step_choice.require_measured_compression(parameters, constants)
     return step_choice.longest_step(step_choice.compression_errors(parameters, constants), parameters, limit)
 
@@ -176,7 +191,7 @@ def reason_of_step(parameters, constants):
     return step_choice.compression_reason(parameters, constants, limit)
 
 
-def _with_ends(parameters, constants):
+def _with_final_filling(parameters, constants):
     limit, final = densest(constants), parameters.finalFilling
     if final is None:
         final = limit if parameters.finalPressure else FINAL_FILLING
@@ -186,7 +201,7 @@ def _with_ends(parameters, constants):
         )
     fewest = final * SMALLEST_EDGE**3 / (4 / 3 * pi)
     if parameters.boundary == WALLS:  # the plates that far apart
-        fewest *= (final / piston.DEPOSITED) ** 2
+        fewest *= (final / DEPOSITED) ** 2
     if parameters.grains < fewest:
         raise ParameterError(
             f"grains = {parameters.grains}: the cell would be too small at a filling of {final:.3g}; must be at least "
@@ -196,77 +211,67 @@ def _with_ends(parameters, constants):
     return parameters.changed(finalFilling=final)
 
 
+# ---- the scene ----
+
+
 def prepare(parameters, threads):
     """The Scene of a compression; called within YADE. Raises ParameterError and PackingError."""
     from yade_scripts.run import scene as yade_scene
 
     constants = yade_scene.pair_constants(parameters, linearDamping=parameters.linearDamping)
     parameters = complete(parameters, constants, threads)
-    if parameters.boundary == WALLS:
-        return _between_walls(parameters, constants)
-    cluster = packings.bcca(parameters.grains, parameters.grainRadius, constants["equilibriumOverlap"], parameters.seed)
+    make = _layer if parameters.boundary == WALLS else _cluster
+    packing, edges, build, own_series = make(parameters, constants)
+    time_unit = constants["timeUnit"]
+    parameters = with_start(parameters.changed(initialFilling=filling_factor(packing.radius, edges)), time_unit)
+    end = Ending(parameters, time_unit)
+
+    def come_down(recorder, state):
+        _move_piston(end.rate)
+        return end.is_pressed(recorder)
+
+    rolling = parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
+    height = {"initialHeight": edges[UP]} if parameters.boundary == WALLS else {}
+    between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
+    return Scene(
+        parameters=parameters,
+        constants=constants,
+        derived={"initialEdge": edges[0], **height, "rollingEnergy": 6 * pi**2 * rolling},  # K13 eq 1
+        aggregate=np.zeros(packing.grains, dtype=int),
+        build=build,
+        series=own_series,
+        law={"linearDamping": parameters.linearDamping},
+        energy_is_conserved=parameters.engine == "fused",
+        control=come_down if parameters.boundary == WALLS else end,
+        ended_by=end.ended_by,
+        interval=max(1, round(between / parameters.stepFraction)),
+        step_choice=reason_of_step(parameters, constants),
+    )
+
+
+def _cluster(parameters, constants):
+    """(Packing, edges (3,) of the cell [m], function that builds the scene, its series)."""
+    from yade.wrapper import Omega
+
+    from yade_scripts.run import scene as yade_scene
+
+    radius, overlap = parameters.grainRadius, constants["equilibriumOverlap"]
+    cluster = packings.bcca(parameters.grains, radius, overlap, parameters.seed)
     edge = _first_edge(parameters, cluster)
-    first = filling_factor(cluster.radius, np.full(3, edge))
-    parameters = with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
     mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
     rate = shrinking_rate(parameters, constants["timeUnit"])
     material = yade_scene.material_of(parameters)
-    end = Ending(parameters, constants["timeUnit"], rate)
-    return Scene(
-        parameters=parameters,
-        constants=constants,
-        derived={"initialEdge": edge, "rollingEnergy": 6 * pi**2 * _rolling(parameters)},
-        aggregate=np.zeros(cluster.grains, dtype=int),
-        build=lambda: _build(cluster, edge, rate, material),
-        series=lambda state: series(state, mass),
-        law={"linearDamping": parameters.linearDamping},
-        energy_is_conserved=parameters.engine == "fused",
-        control=end,
-        ended_by=end.ended_by,
-        interval=_interval(parameters),
-        step_choice=reason_of_step(parameters, constants),
-    )
 
+    def build():
+        omega = Omega()
+        omega.periodic = True
+        omega.cell.setBox(edge, edge, edge)
+        # 1 gives grains the mean flow when the rate changes (K13 eq 12), and leaves them to themselves afterwards
+        omega.cell.homoDeform = 1
+        yade_scene.add_bodies([cluster], [(0, 0, 0)], material)
+        deform(3 * (-rate,))
 
-def _between_walls(parameters, constants):
-    from yade_scripts.run import scene as yade_scene
-
-    material = yade_scene.material_of(parameters)
-    on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)
-    layer, edge, height = piston.layer(parameters, constants, on_plate)
-    first = filling_factor(layer.radius, [edge, edge, height])
-    parameters = with_start(parameters.changed(initialFilling=first), constants["timeUnit"])
-    rate = shrinking_rate(parameters, constants["timeUnit"])
-    end = Ending(parameters, constants["timeUnit"], rate)
-
-    def control(recorder, state):
-        piston.move(rate)
-        return end.is_pressed(recorder)
-
-    return Scene(
-        parameters=parameters,
-        constants=constants,
-        derived={"initialEdge": edge, "initialHeight": height, "rollingEnergy": 6 * pi**2 * _rolling(parameters)},
-        aggregate=np.zeros(layer.grains, dtype=int),
-        build=lambda: piston.build(layer, edge, height, rate * height, material),
-        series=piston.series,
-        law={"linearDamping": parameters.linearDamping},
-        control=control,
-        ended_by=end.ended_by,
-        interval=_interval(parameters),
-        step_choice=reason_of_step(parameters, constants),
-    )
-
-
-def _rolling(parameters):
-    """gamma r0 xi_crit, of which 6 pi^2 times is the rolling energy (K13 eq 1)."""
-    return parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
-
-
-def _interval(parameters):
-    """Steps between samples."""
-    between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
-    return max(1, round(between / parameters.stepFraction))
+    return cluster, np.full(3, edge), build, lambda state: series(state, mass)
 
 
 def _first_edge(parameters, cluster):
@@ -285,19 +290,38 @@ def _first_edge(parameters, cluster):
     return edge
 
 
-def _build(cluster, edge, rate, material):
-    """Cluster and cell. homoDeform = 1 gives grains the mean flow when the rate changes (K13 eq 12), and leaves them to
-    themselves afterwards: only the boundaries move."""
+def _layer(parameters, constants):
+    """As _cluster(), of a layer between walls: edges of the space between them."""
     from yade.wrapper import Omega
 
     from yade_scripts.run import scene as yade_scene
 
-    omega = Omega()
-    omega.periodic = True
-    omega.cell.setBox(edge, edge, edge)
-    omega.cell.homoDeform = 1
-    yade_scene.add_bodies([cluster], [(0, 0, 0)], material)
-    deform(3 * (-rate,))
+    radius = parameters.grainRadius
+    on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)["equilibriumOverlap"]
+    edge = square_for(parameters.grains, DEPOSITED) * radius
+    layer = rbd(parameters.grains, radius, constants["equilibriumOverlap"], on_plate, edge, parameters.seed)
+    height = layer.position[:, UP].max() + (1 + GAP) * radius
+    rate = shrinking_rate(parameters, constants["timeUnit"])
+    material = yade_scene.material_of(parameters)
+
+    def build():
+        omega = Omega()
+        omega.periodic = True
+        omega.cell.setBox(edge, edge, 2 * height + 10 * layer.radius.max())
+        omega.cell.homoDeform = 0
+        yade_scene.add_bodies([layer], [(0, 0, 0)], material)
+        yade_scene.add_plane(UP, 0.0, material)
+        yade_scene.add_plane(UP, height, material, -rate * height)
+
+    return layer, [edge, edge, height], build, series_between_walls
+
+
+def _move_piston(rate):
+    """Have the upper plate come down at `rate` [1/s] times its height from now on."""
+    from yade.wrapper import Omega
+
+    piston = Omega().bodies[-1].state
+    piston.vel = [0.0, 0.0, -rate * piston.pos[UP]]
 
 
 def series(state, mass):
@@ -314,33 +338,45 @@ def series(state, mass):
     }
 
 
+def series_between_walls(state):
+    """The same between walls: edges, filling and pressure are of the space between the plates."""
+    edges = np.array([*state["cell_size"][:UP], np.ptp(state["plane_position"])])
+    plane, force = state["plane_contacts"][:, 1], state["plane_contact_normal_force"]
+    pressures = np.bincount(plane, weights=force, minlength=2) / np.prod(state["cell_size"][:UP])
+    contacts = 2 * len(state["contact_pairs"]) + len(state["plane_contacts"])
+    return {
+        "filling": filling_factor(state["radius"], edges),
+        "pressure": pressures.mean(),
+        "kinetic_pressure": 0.0,
+        "piston_pressure": pressures[1],
+        "coordination": contacts / len(state["radius"]),
+        **{f"edge_{axis}": edge for axis, edge in zip("xyz", edges)},
+    }
+
+
+# ---- what is known without a run ----
+
+
 def estimate(parameters):
     """Estimate of a run, without its cluster: two contacts a grain, more where it is dense (A24 eq 45)."""
     from analysis.theory.aggregates import bcca_coordination
 
     constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
     try:
-        ends = _with_ends(parameters, constants)
+        ends = _with_final_filling(parameters, constants)
     except ParameterError:  # the run will say what is wrong
         ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
-    step = _step(ends, constants)
-    typical = piston.DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
+    try:
+        step = _step(ends, constants, stability.step_limit(constants, ends.finalFilling))
+    except ParameterError:
+        step = step_choice.SHORTEST
+    typical = DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
     first = ends.initialFilling or typical
     ends = ends.changed(initialFilling=min(first, 0.9 * ends.finalFilling))
     duration = parameters.duration or longest_duration(ends, constants["timeUnit"])
     fillings = np.exp(np.linspace(log(ends.initialFilling), log(ends.finalFilling), 50))
     contacts = parameters.grains * float(bcca_coordination(fillings).mean()) / 2
     return Estimate(parameters.grains, contacts, duration / constants["timeUnit"] / step)
-
-
-def _step(parameters, constants):
-    """stepFraction as a run will have it."""
-    if parameters.stepFraction != stability.AUTO:
-        return parameters.stepFraction
-    try:
-        return _longest_step(parameters, constants, stability.step_limit(constants, parameters.finalFilling))
-    except ParameterError:  # the run will say what is wrong
-        return step_choice.SHORTEST
 
 
 def typical_first_filling(grains):
@@ -353,7 +389,7 @@ def expected(parameters, run):
     held, derived = run.get("parameters", {}), run.get("derived", {})
     found = {"initialFilling": held.get("initialFilling")} if parameters.initialFilling is None else {}
     try:
-        ends = _with_ends(parameters, pair_constants(parameters))
+        ends = _with_final_filling(parameters, pair_constants(parameters))
     except ParameterError:  # the run will say what is wrong
         return found
     found["finalFilling"] = ends.finalFilling

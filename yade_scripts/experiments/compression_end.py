@@ -1,4 +1,5 @@
-"""How long a compression lasts, when it turns into the stretching, and when it ends; how the cell is made to deform (K13 section 2)."""
+"""How long a compression lasts, when it turns into the stretching, when it ends, and how the cell deforms (K13 section
+2)."""
 
 from math import log
 
@@ -32,10 +33,10 @@ def rates():
 
 
 class Ending:
-    """Turns the compression into the stretching, and ends the run: Scene.control. time_unit: t0 [s]; rate [1/s]."""
+    """Scene.control that turns the compression into the stretching, and ends the run; time_unit: t0 [s]."""
 
-    def __init__(self, parameters, time_unit, rate):
-        self.parameters, self.rate = parameters, rate
+    def __init__(self, parameters, time_unit):
+        self.parameters, self.rate = parameters, shrinking_rate(parameters, time_unit)
         self.window = AVERAGED * time_unit
         self._loose = parameters.stretchFilling
 
@@ -61,7 +62,11 @@ class Ending:
 
     def is_pressed(self, recorder):
         """Whether the final filling or the final pressure is reached."""
-        return recorder.recent("filling")[-1] >= self.parameters.finalFilling or self._pressed(recorder)
+        if recorder.recent("filling")[-1] >= self.parameters.finalFilling:
+            return True
+        limit = self.parameters.finalPressure
+        long_enough = limit is not None and recorder.recent("time")[-1] >= self.window
+        return long_enough and self._pressure(recorder) >= limit
 
     def ended_by(self, recorder):
         """Which parameter ended the run, and where."""
@@ -75,26 +80,31 @@ class Ending:
             return f"finalFilling, {where}"
         return f"finalPressure, {where} and {self._pressure(recorder):.3g} Pa over the last {AVERAGED:g} t0"
 
-    def _pressed(self, recorder):
-        limit = self.parameters.finalPressure
-        if limit is None or recorder.recent("time")[-1] < self.window:
-            return False
-        return self._pressure(recorder) >= limit
-
     def _pressure(self, recorder):
-        """By the work of the grains on the boundaries, which they do not do before the aggregate meets its images: the virial of an
-        aggregate that still swings from the start is not zero."""
+        """By the work of the grains on the boundaries, which they do not do before the aggregate meets its images: the
+        virial of an aggregate that still swings from the start is not zero."""
         return pressure_at_end({name: recorder.recent(name, self.window) for name in OF_PRESSURE}, self.window)
 
 
 def with_start(parameters, time_unit):
-    """The parameters, with initialFilling, with a duration. Raises ParameterError where nothing, or no pressure, would be reached."""
+    """The parameters with a duration; they have an initialFilling. Raises ParameterError where nothing, or no pressure,
+    would be reached."""
     if parameters.finalFilling <= parameters.initialFilling:
         raise ParameterError(
-            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the start"
+            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the "
+            "start"
         )
     _require_time_for_pressure(parameters, time_unit)
-    return _with_duration(parameters, time_unit) if parameters.duration is None else parameters
+    if parameters.duration is not None:
+        return parameters
+    duration, step = longest_duration(parameters, time_unit), parameters.stepFraction
+    steps = duration / (step * time_unit)
+    if steps > stability.MOST_STEPS:
+        raise ParameterError(
+            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
+            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
+        )
+    return parameters.changed(duration=duration)
 
 
 def _require_time_for_pressure(parameters, time_unit):
@@ -107,31 +117,20 @@ def _require_time_for_pressure(parameters, time_unit):
         longer = f"duration at least {1.01 * AVERAGED * time_unit:.3g}"
         slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
         raise ParameterError(
-            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over after "
+            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over "
+            "after "
             f"{lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
         )
 
 
-def _with_duration(parameters, time_unit):
-    duration = longest_duration(parameters, time_unit)
-    step = parameters.stepFraction
-    if duration > stability.MOST_STEPS * step * time_unit:
-        steps = duration / (step * time_unit)
-        raise ParameterError(
-            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
-            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
-        )
-    return parameters.changed(duration=duration)
-
-
 def shrinking_rate(parameters, time_unit):
-    """Of lengths L = L0 exp(-rate t) [1/s] (K13 eq 7)."""
+    """Rate [1/s] of lengths L = L0 exp(-rate t) (K13 eq 7)."""
     return 2 * parameters.strainRate / time_unit
 
 
 def longest_duration(parameters, time_unit):
-    """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth more,
-    before which Ending ends the run."""
+    """Time [s] to finalFilling, and to stretchFilling if the cell is stretched: K13 eq 7 backwards, and a hundredth
+    more, before which Ending ends the run."""
     time, axes = time_to_filling(parameters, time_unit), len(AXES[parameters.stretch])
     if axes:
         loose = parameters.stretchFilling or LOOSE * parameters.finalFilling

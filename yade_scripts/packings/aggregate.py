@@ -19,14 +19,6 @@ MADE = ("cpe", *MOST_GROWN)
 EQUAL, TWO, LOGNORMAL = SIZES = ("equal", "two", "lognormal")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
 WIDEST = 2.5  # standard deviations of ln r at which a log-normal distribution is cut off on both sides
-# {parameter: ways of packing that it has an effect on}
-ONLY_WITH = {
-    **dict.fromkeys(("filling", "radius", "removeLooseGrains", "initialOverlap"), ("cpe",)),
-    **dict.fromkeys(("grains", "seed"), MADE),
-    "file": ("file",),
-    "planar": ("cpe", "bcca", "file"),
-    "sizes": tuple(MOST_GROWN),
-}
 
 
 @dataclass(frozen=True)
@@ -36,7 +28,8 @@ class AggregateParameters(GrainParameters):
     packing: str = parameter(
         "cpe",
         one_of([*MADE, "file"]),
-        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, or read from file",
+        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, or read "
+        "from file",
     )
     filling: float | None = parameter(
         None,
@@ -76,7 +69,8 @@ class AggregateParameters(GrainParameters):
     removeLooseGrains: int = parameter(
         0,
         SWITCH,
-        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: impact is that "
+        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: "
+        "impact is that "
         "of the spheres",
     )
     initialOverlap: float = parameter(
@@ -86,6 +80,15 @@ class AggregateParameters(GrainParameters):
         "of that at rest",
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
+
+    # {parameter: ways of packing that it has an effect on}
+    ONLY_WITH = {
+        **dict.fromkeys(("filling", "radius", "removeLooseGrains", "initialOverlap"), ("cpe",)),
+        **dict.fromkeys(("grains", "seed"), MADE),
+        "file": ("file",),
+        "planar": ("cpe", "bcca", "file"),
+        "sizes": tuple(MOST_GROWN),
+    }
 
     def filled_in(self):
         """What follows from the way of packing: radius from grains or grains from radius and filling (cpe)."""
@@ -115,7 +118,7 @@ class AggregateParameters(GrainParameters):
         """What another way of packing alone has must be left out."""
         if self.packing == "file" and self.file is None:
             raise ParameterError("file: not given with packing = file; must be a packing that make_packing.py wrote")
-        for name, packings in ONLY_WITH.items():
+        for name, packings in self.ONLY_WITH.items():
             value = getattr(self, name)
             if value != self.columns()[name].default and self.packing not in packings:
                 text = value if isinstance(value, str) else f"{value:g}"
@@ -193,8 +196,8 @@ def make(parameters, overlap, index):
 
 
 def radii(parameters, index):
-    """Radii (grains,) [m] of a grown aggregate in random order, from a stream of their own: with equal grains the packing
-    stays the same."""
+    """Radii (grains,) [m] of a grown aggregate in random order, from a stream of their own: with equal grains the
+    packing stays the same."""
     p, stream = parameters, random_stream(parameters.seed, index, 1)
     if p.sizes == LOGNORMAL:
         deviations = stream.normal(size=p.grains)

@@ -82,8 +82,8 @@ def _rays(stream):
 def bcca(grains, grain_radius, overlap, seed, index=0, planar=False, radii=None):
     """An aggregate by ballistic cluster-cluster aggregation, in space or in a plane (Sirono & Ueno 2017, section 4).
 
-    Two clusters of equal size (or of numbers of grains that differ by one) and random orientation fly at each other on a
-    straight line, without turning, and stop where their first grains touch; from single grains to the aggregate. The
+    Two clusters of equal size (or of numbers of grains that differ by one) and random orientation fly at each other on
+    a straight line, without turning, and stop where their first grains touch; from single grains to the aggregate. The
     paper doesn't give the impact parameter: here it is uniform over the cross-section in which clusters can meet.
 
     Parameters
@@ -143,7 +143,8 @@ def _met(target, projectile, target_radii, projectile_radii, touching, stream, p
 
 
 def rbd(grains, grain_radius, overlap, overlap_with_plate, edge, seed):
-    """A layer by random ballistic deposition on the plate z = 0, as laboratories grow dust cakes (Blum & Schraepler 2004).
+    """A layer by random ballistic deposition on the plate z = 0, as laboratories grow dust cakes (Blum & Schraepler
+    2004).
 
     Grains come one by one straight down at random places of a square around the z axis that is periodic in x and y, and
     stay where they first touch another grain or the plate. Grains across an edge are there once.

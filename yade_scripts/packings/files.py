@@ -86,7 +86,8 @@ def load(path):
     for number in np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))[:1]:
         first, second = pairs[number]
         raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {overlap[number]:.3g} m; must be less than the smaller radius"
+            f"{path}: grains {first} and {second} overlap by {overlap[number]:.3g} m; must be less than the smaller "
+            "radius"
         )
     return packing
 
@@ -126,7 +127,8 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
 
 
 def sum_of_file(path):
-    """SHA-256 of the grains in a packing's file; None where it can't be read. A run keeps it, to notice another file."""
+    """SHA-256 of the grains in a packing's file; None where it can't be read. A run keeps it, to notice another
+    file."""
     try:
         return _sum_as_written(path, os.stat(path).st_mtime_ns)
     except (OSError, PackingError):
@@ -157,12 +159,13 @@ def _require_material(path, packing, grain_radius, grains):
 
 
 def _require_rest(path, packing, grain_radius, overlap):
-    """Contacts must be at rest by what the file says of them, and none far too deep. A cpe packing may have been made loose
-    on purpose (initialOverlap)."""
+    """Contacts must be at rest by what the file says of them, and none far too deep. A cpe packing may have been made
+    loose on purpose (initialOverlap)."""
     stored = None if packing.parameters.get("packing") == "cpe" else _number(path, packing.parameters, "overlap")
     if stored is not None and abs(stored - overlap) > AT_REST * overlap:
         raise PackingError(
-            f"{path}: its contacts overlap by {stored:.3g} m, those of these grains at rest by {overlap:.3g} m; must be a "
+            f"{path}: its contacts overlap by {stored:.3g} m, those of these grains at rest by {overlap:.3g} m; must "
+            "be a "
             "packing of grains of the same material"
         )
     pairs = contacts(packing)

@@ -163,7 +163,8 @@ def _pairs_within(position, pairs, inside):
 
 
 def largest_piece_of_run(path):
-    """The largest piece in the last state of a collision's run folder, at rest, around the origin; raises PackingError."""
+    """The largest piece in the last state of a collision's run folder, at rest, around the origin; raises
+    PackingError."""
     try:
         run = open_run(path)
         state, overlap = run.last, float(run.derived["equilibriumOverlap"])
@@ -186,7 +187,8 @@ def largest_piece_of_run(path):
 
 
 def turned(packing, seed, index=0):
-    """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in it."""
+    """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in
+    it."""
     stream = random_stream(seed, index)
     if np.any(packing.position[:, 2] != 0):
         rotation = Rotation.random(random_state=stream)

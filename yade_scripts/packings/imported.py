@@ -1,9 +1,8 @@
 """Aggregates of other programs: which grains are meant to touch, and their contacts brought to rest.
 
-Programs write grains that touch 2 r apart, or at the overlap of their own contact law, with the digits that they happen to
-write; in a run a gap of 1e-16 m is no contact, and a contact out of rest pulls. Grains are taken to touch where the gap
-between them is within what the digits hide; then rest.py moves all of them as little as it takes.
-"""
+Programs write grains that touch 2 r apart, or at the overlap of their own contact law, with the digits that they happen
+to write; in a run a gap of 1e-16 m is no contact, and a contact out of rest pulls. Grains are taken to touch where the
+gap between them is within what the digits hide; then rest.py moves all of them as little as it takes."""
 
 from dataclasses import dataclass
 
@@ -132,8 +131,8 @@ def imported(path, texts):
 
 
 def grains_of(packing, material=None):
-    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`, or of the
-    material that is most like them."""
+    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`, or of
+    the material that is most like them."""
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
 
     def others(usual):
@@ -228,7 +227,8 @@ def _require_shallow(path, scaled, pairs, overlap):
         worst = np.argmax(beyond / smaller)
         first, second = pairs[worst]
         raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller one "
+            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the "
+            "smaller one "
             f"more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a "
             "larger tolerance"
         )

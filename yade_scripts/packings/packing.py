@@ -45,7 +45,8 @@ class Packing:
 
 
 def random_stream(seed, index, *more):
-    """numpy Generator of aggregate number index of a seed; more: numbers of independent streams of the same aggregate."""
+    """numpy Generator of aggregate number index of a seed; more: numbers of independent streams of the same
+    aggregate."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index, *more)))
 
 
@@ -76,7 +77,8 @@ def characteristic_radius(packing):
 
 
 def surface_gaps(position, radius, pairs):
-    """Distances (M,) of the surfaces of pairs (M, 2), negative where they overlap, in the unit of position and radius."""
+    """Distances (M,) of the surfaces of pairs (M, 2), negative where they overlap, in the unit of position and
+    radius."""
     distance = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     return distance - radius[pairs].sum(axis=1)
 
@@ -118,7 +120,8 @@ def largest_cluster(grains, pairs):
 
 
 def largest_piece(packing):
-    """The largest connected piece of a packing, where it was; `dropped` among its parameters: how many grains are gone."""
+    """The largest connected piece of a packing, where it was; `dropped` among its parameters: how many grains are
+    gone."""
     kept, _ = largest_cluster(packing.grains, contacts(packing))
     about = {**packing.parameters, "dropped": packing.grains - len(kept)}
     return Packing(packing.position[kept], packing.radius[kept], packing.seed, about)
@@ -145,7 +148,8 @@ def require_connected(packing):
 
 
 def description(packing):
-    """A line about a packing: grains, pieces, contacts, filling factor, radii, fractal dimension; lengths in mean radii.
+    """A line about a packing: grains, pieces, contacts, filling factor, radii, fractal dimension; lengths in mean
+    radii.
 
     The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension
     the mean slope of the number of grains about a grain from NEAREST to the radius of gyration.

@@ -43,7 +43,8 @@ def _distances(apart, radii, along):
 
 
 def _encounter(first, second, along, reach):
-    """(begin, end): distances moved [m] between which the spheres around the two can touch; (0, 0) when they never do."""
+    """(begin, end): distances moved [m] between which the spheres around the two can touch; (0, 0) when they never
+    do."""
     centres = [positions.mean(axis=0) for positions in (first, second)]
     extents = [np.linalg.norm(p - c, axis=1).max() for p, c in zip((first, second), centres)]
     apart = centres[0] - centres[1]
@@ -91,7 +92,8 @@ def offset_pair(target, projectile, velocity, impact):
 
 
 def smallest_edge(packing):
-    """Edge [m] of the cubic cell as large as the packing in x, y or z (K13 section 2.3), and a tenth of a radius more."""
+    """Edge [m] of the cubic cell as large as the packing in x, y or z (K13 section 2.3), and a tenth of a radius
+    more."""
     radius = packing.radius.max()
     return float(np.ptp(packing.position, axis=0).max() + (2 + IMAGE_GAP) * radius)
 

@@ -2,9 +2,8 @@
 
 Newton's method on the distances of the grains that touch: d_ij(x) = r_i + r_j - delta_ij, each step the smallest motion
 that solves the linearised equations. Contacts without loops, and loops that once were at rest, have an exact solution;
-where there are more contacts than the grains can obey at once, the steps lead to the least sum of k_ij (d_ij - ...)^2, with
-k_ij the stiffness of the contact at rest: the minimum of the elastic energy, where forces balance.
-"""
+where there are more contacts than the grains can obey at once, the steps lead to the least sum of k_ij (d_ij - ...)^2,
+with k_ij the stiffness of the contact at rest: the minimum of the elastic energy, where forces balance."""
 
 from dataclasses import dataclass
 
@@ -16,15 +15,16 @@ from analysis.progress import progress
 from yade_scripts.packings.packing import AT_REST, PackingError, equilibrium_overlaps, surface_gaps, touching
 
 MOST_MOVES = 20
-# Of LSQR a step: more of them follow soft modes of dense packings, which are of no use before distances are nearly right
-# (10,800 close-packed grains: 1 % left after 6 steps of 300, 4 % after 6 of 2000).
+# Of LSQR a step: more of them follow soft modes of dense packings, which are of no use before distances are nearly
+# right (10,800 close-packed grains: 1 % left after 6 steps of 300, 4 % after 6 of 2000).
 ITERATIONS = 300
 DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Positions (N, 3) [m], pairs (M, 2) of contacts, how much deeper each (M,) is than at rest, in equilibrium overlaps."""
+    """Positions (N, 3) [m], pairs (M, 2) of contacts, how much deeper each (M,) is than at rest, in equilibrium
+    overlaps."""
 
     position: np.ndarray
     pairs: np.ndarray
@@ -84,8 +84,8 @@ def unpressed(position, radius, pairs, grain_radius, overlap):
 
 
 def _smallest_motion(normal, pairs, change, weight, grains):
-    """Motion (N, 3) of least length that changes the distances of pairs (M, 2) by change (M,), to first order; where that
-    is impossible, with the least sum of squares of weight (M,) times what is missing."""
+    """Motion (N, 3) of least length that changes the distances of pairs (M, 2) by change (M,), to first order; where
+    that is impossible, with the least sum of squares of weight (M,) times what is missing."""
     contacts = np.repeat(np.arange(len(pairs)), 3)
     axes = np.tile(np.arange(3), len(pairs))
     columns = [3 * np.repeat(pairs[:, side], 3) + axes for side in (0, 1)]

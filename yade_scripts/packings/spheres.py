@@ -242,7 +242,8 @@ def _require_axes(path, found, names):
 
 
 def _spheres(path, kind, by_role, unit=None, position=None):
-    """Spheres of arrays {x, y, z, and radius or diameter if there are: (N,)}, or of positions (N, 3) in place of x, y, z."""
+    """Spheres of arrays {x, y, z, and radius or diameter if there are: (N,)}, or of positions (N, 3) in place of x, y,
+    z."""
     if position is not None:
         if position.ndim != 2 or position.shape[1] != 3:
             raise PackingError(f"{path}: positions have the shape {position.shape}; must be (N, 3)")

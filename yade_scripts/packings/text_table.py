@@ -1,13 +1,11 @@
 """Where the table of grains stands in a text file, and what its columns are: xyz, extended xyz, LAMMPS data and dump,
 DustCollider, and plain tables with or without names (csv, YADE, FracVAL, PyFracVAL, aggregate_gen).
 
-Sources: https://github.com/libAtoms/extxyz (Properties), https://docs.lammps.org (dump, read_data), YADE's export.textExt,
-and files that the others write. Of several frames the last one is taken.
-"""
+Sources: https://github.com/libAtoms/extxyz (Properties), https://docs.lammps.org (dump, read_data), YADE's
+export.textExt, and files that the others write. Of several frames the last one is taken."""
 
 import re
-from dataclasses import dataclass, replace
-from itertools import islice
+from dataclasses import dataclass
 
 from yade_scripts.packings.packing import PackingError
 
@@ -38,71 +36,55 @@ class Table:
     unit: str | None = None  # of length, if the format has one
 
 
-class _Lines:
-    """Lines of a file, counted: `read` of them so far."""
-
-    def __init__(self, path, file):
-        self.path, self.file, self.read = path, file, 0
-
-    def next(self):
-        self.read += 1
-        return self.file.readline()
-
-    def skip(self, rows):
-        if sum(1 for _ in islice(self.file, rows)) < rows:
-            raise PackingError(f"{self.path}: ends within the {rows} rows after line {self.read}; must hold them all")
-        self.read += rows
-
-    def count(self, text):
-        """The number of grains that a line says."""
-        word = text.split()[0] if text.split() else ""
-        if not word.isdecimal() or len(word) > 9 or int(word) < 1:
-            raise PackingError(
-                f"{self.path}: line {self.read}: '{word[:40]}' grains; must be a whole number > 0, below 1e9"
-            )
-        return int(word)
-
-
 def find_table(path):
     """The Table of a text file; raises PackingError when it has none."""
     with open(path, encoding="utf-8-sig", errors="replace") as file:
-        head = [line.strip() for line in islice(file, HEAD)]
-        file.seek(0)
-        lines, first = _Lines(path, file), next((line for line in head if line), None)
-        if first is None:
-            raise PackingError(f"{path}: empty; must be a file of grains")
-        if first.startswith("ITEM:"):
-            return _dump(lines)
-        if any(_ATOMS.match(line) for line in head):
-            return _data(lines)
-        if head[0].isdecimal():
-            return _xyz(lines)
+        lines = file.read().split("\n")
+    head = [line.strip() for line in lines[:HEAD]]
+    begin = next((line for line in head if line), None)
+    if begin is None:
+        raise PackingError(f"{path}: empty; must be a file of grains")
+    if begin.startswith("ITEM:"):
+        return _dump(path, lines)
+    if any(_ATOMS.match(line) for line in head):
+        return _data(path, lines)
+    if head[0].isdecimal():
+        return _xyz(path, lines)
     return _dust_collider(head) or _plain(path, head)
 
 
-def _xyz(lines):
+def _count(path, lines, number):
+    """The number of grains that line `number`, from 0, says; so many must follow in the file."""
+    word = (lines[number].split() or [""])[0]
+    if not word.isdecimal() or int(word[:10]) < 1:
+        raise PackingError(f"{path}: line {number + 1}: '{word[:40]}' grains; must be a whole number > 0")
+    rows = int(word[:10])
+    if rows >= len(lines) - number:
+        raise PackingError(f"{path}: ends within the {rows} rows after line {number + 1}; must hold them all")
+    return rows
+
+
+def _xyz(path, lines):
     """A number of grains, a line about them, the grains; again for each frame."""
-    frames = 0
-    while (counted := lines.next()).strip():
-        rows, about = lines.count(counted), lines.next()
-        if properties := re.search(r'Properties="?([^"\s]+)', about):
-            kind, names = "extended xyz", _properties(lines.path, properties[1])
-        else:
-            kind, names = "xyz", None
-        table, frames = Table(kind, lines.read, rows, names), frames + 1
-        row = lines.next().split()
-        # of others nobody says what the columns are; and x y z may be without a species
-        if not properties and len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
-            table = replace(table, names=("species", "x", "y", "z", "radius")[: len(row)])
-        lines.skip(rows - 1)
-    return _of_frames(table, frames)
+    at = frames = 0
+    while at < len(lines) and lines[at].strip():
+        rows, first, frames = _count(path, lines, at), at + 2, frames + 1
+        at = first + rows
+    properties = re.search(r'Properties="?([^"\s]+)', lines[first - 1])
+    if properties:
+        return Table(_of_frames("extended xyz", frames), first, rows, _properties(path, properties[1]))
+    row, names = lines[first].split() if first < len(lines) else [], None
+    # of others nobody says what the columns are; and x y z may be without a species
+    if len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
+        names = ("species", "x", "y", "z", "radius")[: len(row)]
+    return Table(_of_frames("xyz", frames), first, rows, names)
 
 
 def _properties(path, text):
     """Names of all columns, of species:S:1:pos:R:3:radius:R:1."""
     words, names = text.split(":"), []
     for name, count in zip(words[::3], words[2::3]):
-        if not count.isdecimal() or int(count) > 100:
+        if count not in map(str, range(1, 101)):
             raise PackingError(
                 f"{path}: Properties={text[:60]}: not understood; must be name:type:columns, again and again"
             )
@@ -111,39 +93,38 @@ def _properties(path, text):
     return tuple(names)
 
 
-def _dump(lines):
+def _dump(path, lines):
     """ITEM: NUMBER OF ATOMS, a line with it, ..., ITEM: ATOMS and names, the grains; again for each frame."""
-    rows, frames, table = 0, 0, None
-    while text := lines.next():
-        if text.startswith("ITEM: NUMBER OF ATOMS"):
-            rows = lines.count(lines.next())
-        elif text.startswith("ITEM: ATOMS"):
-            table, frames = Table("LAMMPS dump", lines.read, rows, tuple(text.split()[2:])), frames + 1
-            lines.skip(rows)
-    if table is None:
-        raise PackingError(f"{lines.path}: no ITEM: ATOMS; must have one")
-    return _of_frames(table, frames)
+    rows, frames = 0, [number for number, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
+    for number, line in enumerate(lines[:-1]):
+        if line.startswith("ITEM: NUMBER OF ATOMS"):
+            rows = _count(path, lines, number + 1)
+    if not frames:
+        raise PackingError(f"{path}: no ITEM: ATOMS; must have one")
+    names = tuple(lines[frames[-1]].split()[2:])
+    return Table(_of_frames("LAMMPS dump", len(frames)), frames[-1] + 1, rows, names)
 
 
-def _of_frames(table, frames):
-    return replace(table, kind=f"{table.kind}, the last of {frames} frames") if frames > 1 else table
-
-
-def _data(lines):
+def _data(path, lines):
     """N atoms in the header; Atoms # style, an empty line, the grains."""
     rows = 0
-    while text := lines.next():
-        if _ATOMS.match(text):
-            rows = lines.count(text)
-        if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", text):
+    for number, line in enumerate(lines):
+        if _ATOMS.match(line):
+            rows = _count(path, lines, number)
+        if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", line):
             style, names = section[1], ATOM_STYLES.get(section[1])
             kind = f"LAMMPS data, atom style {style or 'not said'}"
-            return Table(kind, lines.read, rows, names and tuple(names.split()))
-    raise PackingError(f"{lines.path}: no section Atoms; must have one")
+            return Table(kind, number + 1, rows, names and tuple(names.split()))
+    raise PackingError(f"{path}: no section Atoms; must have one")
+
+
+def _of_frames(kind, frames):
+    return f"{kind}, the last of {frames} frames" if frames > 1 else kind
 
 
 def _dust_collider(head):
-    """aggregate.txt of DustCollider: N and two radii, four lines, then x y z, a column, radius, a column, material; nm."""
+    """aggregate.txt of DustCollider: N and two radii, four lines, then x y z, a column, radius, a column, material;
+    nm."""
     first, rows = head[0].split(), [line.split() for line in head[5:] if line]
     if 3 <= len(first) < 7 and first[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
         return Table("DustCollider", 5, int(first[0]), ("x", "y", "z", "-", "radius", "-", "material"), unit="nm")

@@ -20,7 +20,7 @@ class ParameterError(InputError, ValueError):
 
 
 class UnknownParameter(ParameterError):
-    """A name that is no parameter's."""
+    """A name that no parameter has."""
 
 
 def unknown(name, names):
@@ -46,8 +46,8 @@ MEANT = 1e9  # times that a value may lie outside of what is usual, if it is mea
 
 @dataclass(frozen=True)
 class Usual:
-    """Between which values a quantity lies in nature and in laboratories, in SI units, and who says so: what lies outside was
-    probably given in another unit."""
+    """The range of a quantity in nature and in laboratories (SI), and its source: what lies outside was probably given
+    in another unit."""
 
     low: float
     high: float
@@ -65,8 +65,19 @@ def one_of(names):
 def parameter(default, check, meaning, unit="", word=None, of_consequence=True, usual=None):
     """A field of Parameters; its annotation is the type (float, int or str, or one of them with None).
 
-    default None: it follows from the others. word: a text that a number's column may hold as well.
-    of_consequence: whether results depend on it. usual: a Usual range, outside of which `unusual=1` must be given too.
+    Parameters
+    ----------
+    default
+        None: it follows from the others.
+    check : Check
+    meaning, unit : str
+        For the help text.
+    word : str, optional
+        A text that a number's column may hold as well.
+    of_consequence : bool
+        Whether results depend on it.
+    usual : Usual, optional
+        A range outside of which `unusual=1` must be given too.
     """
     about = dict(check=check, meaning=meaning, unit=unit, word=word, of_consequence=of_consequence, usual=usual)
     return field(default=default, metadata=about)
@@ -96,7 +107,7 @@ class Column:
         return value
 
     def require_usual(self, value, meant):
-        """Raise ParameterError where a number other than 0 lies outside of the usual range; of a value that is meant (unusual=1) where
+        """Raise ParameterError where a number other than 0 lies outside of the usual range; with unusual=1 only where
         it lies so far outside that the constants derived from it would not be numbers."""
         if not self.usual or not value:
             return
@@ -114,17 +125,13 @@ class Column:
     def _number(self, text):
         try:
             number = evaluate(_unquoted(text) if isinstance(text, str) else repr(text))
-        except NotANumber as problem:
-            raise ParameterError(f"{self.name} = {_shortened(text)}: {problem}; {self.must}") from None
-        if self.kind is int and number != int(number):
+            converted = self.kind(number)
+        except (NotANumber, OverflowError) as problem:
+            reason = problem if isinstance(problem, NotANumber) else "not a finite number"
+            raise ParameterError(f"{self.name} = {_shortened(text)}: {reason}; {self.must}") from None
+        if self.kind is int and number != converted:
             raise ParameterError(f"{self.name} = {_shortened(text)}: not a whole number; {self.must}")
-        return self._converted(number, text)
-
-    def _converted(self, number, text):
-        try:
-            return self.kind(number)
-        except OverflowError:
-            raise ParameterError(f"{self.name} = {_shortened(text)}: not a finite number; {self.must}") from None
+        return converted
 
     def help(self):
         """Name, default and unit, meaning, what it must be."""

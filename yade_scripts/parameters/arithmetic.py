@@ -44,33 +44,25 @@ def evaluate(text):
 def _number(node, depth):
     if depth == 0:
         raise NotANumber(f"more than {DEEPEST} operations within each other")
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-        number = node.value
-    elif isinstance(node, ast.Name) and node.id in CONSTANTS:
-        number = CONSTANTS[node.id]
-    elif isinstance(node, ast.UnaryOp) and type(node.op) in SIGNS:
-        number = SIGNS[type(node.op)](_number(node.operand, depth - 1))
-    elif isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-        number = OPERATORS[type(node.op)](_number(node.left, depth - 1), _number(node.right, depth - 1))
-    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
-        number = _power(_number(node.left, depth - 1), _number(node.right, depth - 1))
-    elif _is_function(node):
-        number = FUNCTIONS[node.func.id](_number(node.args[0], depth - 1))
-    else:
-        raise NotANumber("not a finite number")
+    inner = lambda child: _number(child, depth - 1)
+    match node:
+        case ast.Constant(value=value) if type(value) in (int, float):
+            number = value
+        case ast.Name(id=name) if name in CONSTANTS:
+            number = CONSTANTS[name]
+        case ast.UnaryOp(op=sign, operand=operand) if type(sign) in SIGNS:
+            number = SIGNS[type(sign)](inner(operand))
+        case ast.BinOp(left=left, op=ast.Pow(), right=right):
+            number = _power(inner(left), inner(right))
+        case ast.BinOp(left=left, op=operation, right=right) if type(operation) in OPERATORS:
+            number = OPERATORS[type(operation)](inner(left), inner(right))
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
+            number = FUNCTIONS[name](inner(argument))
+        case _:
+            raise NotANumber("not a finite number")
     if isinstance(number, int) and number.bit_length() > LARGEST_WHOLE:
         raise NotANumber(f"a whole number of more than {LARGEST_WHOLE} bits")
     return number
-
-
-def _is_function(node):
-    return (
-        isinstance(node, ast.Call)
-        and isinstance(node.func, ast.Name)
-        and node.func.id in FUNCTIONS
-        and len(node.args) == 1
-        and not node.keywords
-    )
 
 
 def _power(base, exponent):

@@ -13,7 +13,8 @@ class InputError(Exception):
 
 @contextmanager
 def one_line_errors(script):
-    """Within it, an InputError, a file that can't be used, or a plugin that isn't built, becomes one line and exit status 2."""
+    """Within it an InputError, a file that can't be used, or a plugin that isn't built, is one line and exit status
+    2."""
     try:
         yield
     except (InputError, ImportError, MemoryError) as error:
@@ -25,7 +26,6 @@ def one_line_errors(script):
 
 
 def tell(text, script=None):
-    """One line on stderr that begins with the name of the script, which is this process's by default; nothing when it can't be
-    written."""
+    """One line on stderr that begins with the name of the script (this process's); nothing when it can't be written."""
     with suppress(OSError):
         print(printable(f"{script or os.path.basename(sys.argv[0])}: {text}"), file=sys.stderr, flush=True)

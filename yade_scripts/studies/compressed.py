@@ -1,13 +1,14 @@
-"""Collisions of compressed aggregates beside close-packed and extracted (CPE) ones. Compressed cells are made first, spheres cut out of them, then collided:
+"""Collisions of compressed aggregates beside close-packed and extracted (CPE) ones. Compressed cells are made first,
+spheres cut out of them, then collided:
 
     python3 yade_scripts/study.py compressed-cells -j 2
     python3 yade_scripts/studies/compressed.py cut        the spheres, into runs/compressed-packings
     python3 yade_scripts/study.py compressed-desk -j 2
 
-make study-compressed does all of it. The recipe of Oshiro et al. (2025): a BCCA cluster in a periodic cell is compressed
-(Kataoka et al. 2013), and spheres are cut out where the filling is that of the CPE aggregates, to TOLERANCE: places in the cell are drawn
-until that is so. A pair comes from one cell, in two places and orientations, whose spheres may share grains.
-"""
+make study-compressed does all of it. The recipe of Oshiro et al. (2025): a BCCA cluster in a periodic cell is
+compressed (Kataoka et al. 2013), and spheres are cut out where the filling is that of the CPE aggregates, to TOLERANCE:
+places in the cell are drawn until that is so. A pair comes from one cell, in two places and orientations, whose spheres
+may share grains."""
 
 import os
 import sys

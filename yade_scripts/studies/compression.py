@@ -1,13 +1,13 @@
 """Tables of the study of Kataoka et al. (2013, K13): static compression of BCCA clusters in periodic cells.
 
-full: what Figs 4 to 13 show, ten clusters of every set of parameters. desk: a selection for an evening on two cores: the
-fiducial parameters with three clusters, fewer grains with more, every parameter varied at 1024 grains, and cells that are
-stretched again, which K13 leaves to later work. own: more clusters of the paper's size, of 1,024 and of 4,096 grains, up to
-the filling factor where the paper's law ends. Rows stand in the order of their worth: one cluster of every set first.
-"""
+full: what Figs 4 to 13 show, ten clusters of every set of parameters. desk: a selection for an evening on two cores:
+the fiducial parameters with three clusters, fewer grains with more, every parameter varied at 1024 grains, and cells
+that are stretched again, which K13 leaves to later work. own: more clusters of the paper's size, of 1,024 and of 4,096
+grains, up to the filling factor where the paper's law ends. Rows stand in the order of their worth: one cluster of
+every set first."""
 
-# t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of 0.1
-# and to 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
+# t0; K13 takes 0.1. The pressure, by the work of the boundaries, is that at a step of 0.05 to 1 % below a filling of
+# 0.1 and to 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
 STEP = 0.3
 FIDUCIAL = {"grains": 16384, "strainRate": "3e-7"}
 RATES = ("1e-7", "3e-7", "1e-6", "3e-6", "1e-5")

@@ -1,10 +1,10 @@
 """Tables of the study of Arakawa et al. (2024, A24): head-on collisions of equal CPE aggregates of ice grains.
 
-full: what Figs 4 to 9 show (section 3), ten seeds of every collision. desk: a selection for an evening, at twice the time
-step. first: one figure (Fig. 8, R = 40), some minutes. prediction: pairs whose largest compression was predicted from
-their packings before they ran. referee: what the comparison with the paper leaves open, mostly pairs of desk with one thing
-changed. Rows stand in the order of their worth: small aggregates first, the first points of every figure early.
-"""
+full: what Figs 4 to 9 show (section 3), ten seeds of every collision. desk: a selection for an evening, at twice the
+time step. first: one figure (Fig. 8, R = 40), some minutes. prediction: pairs whose largest compression was predicted
+from their packings before they ran. referee: what the comparison with the paper leaves open, mostly pairs of desk with
+one thing changed. Rows stand in the order of their worth: small aggregates first, the first points of every figure
+early."""
 
 from itertools import product
 
@@ -13,8 +13,8 @@ REFERENCE = 5  # i of the velocity 10^(0.1 i) m/s at which sizes are compared (F
 VELOCITIES = range(8)
 FILLINGS = (0.4, 0.3)
 
-# {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow collisions of
-# larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
+# {(filling, radius): seeds} at the reference velocity, seeds of every other velocity at R = 40, and of slow collisions
+# of larger aggregates, which show best whether tau_max falls with velocity (the elastic limit's sign)
 DESK_SIZES = {(filling, radius): n for radius, n in {40: 20, 50: 8, 60: 8, 80: 3}.items() for filling in FILLINGS}
 DESK_VELOCITIES = 10
 DESK_SLOW = {(0.4, 60): 3, (0.3, 60): 2}
@@ -80,8 +80,8 @@ def first():
 
 
 def prediction():
-    """Rows of pairs that were predicted: from the filling of the zones that meet at R = 60 and 80, and from the overlap of
-    a rigid approach at R = 40."""
+    """Rows of pairs that were predicted: from the filling of the zones that meet at R = 60 and 80, and from the overlap
+    of a rigid approach at R = 40."""
 
     def pairs(radius, i, seeds, **more):
         return [row(f, radius, i, s, viscoelasticTime=0, **more) for f in FILLINGS for s in seeds]
@@ -112,7 +112,8 @@ def referee():
     between = pairs(70, at, range(1, 6))
     # Outcomes: sticking at 1 to 2.5 m/s. Of a pair that has also run for less the longer run counts.
     long = {"fillings": (0.4,), "folder": LONG, "step": LONG_STEP, "duration": "3e-6", "ending": "-3us"}
-    # E* at 0.4, where tau v/delta differs most between elastic and rigid-plastic spheres, until the halves part fastest.
+    # E* at 0.4, where tau v/delta differs most between elastic and rigid-plastic spheres, until the halves part
+    # fastest.
     slow = {"fillings": (0.4,), "step": LONG_STEP, "duration": "8e-7", "ending": "-0.8us"}
     # E* hangs on delta_offset, the line of d_max against size: the ends of the sizes, until the halves part fastest.
     large = {"fillings": (0.4,), "step": LONG_STEP, "duration": "4e-7", "ending": "-0.4us"}

@@ -1,11 +1,11 @@
 """Tables of the study of Sirono & Ueno (2017, S17): head-on collisions of sintered aggregates of 1,024 ice grains.
 
-full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper has
-five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds each. beyond: what
-the desk's runs leave open: compacted aggregates in space, springs that are held at their limits, xi_crit = 30 Angstrom.
-decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the order of their worth: one seed
-of every point after another. Compacted aggregates are read from files that sintered_growth.py makes first.
-"""
+full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the
+paper has five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds
+each. beyond: what the desk's runs leave open: compacted aggregates in space, springs that are held at their limits,
+xi_crit = 30 Angstrom. decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the
+order of their worth: one seed of every point after another. Compacted aggregates are read from files that
+sintered_growth.py makes first."""
 
 import os
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ GROWN = "runs/sintered-grown"  # where sintered_growth.py leaves compacted aggre
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
 # Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece
-# changed after 9.2 us, and no part of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up
-# to 0.05 K(0).
+# changed after 9.2 us, and no part of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by
+# up to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
 STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates
 STEP_COMPACTED = {0.2: 0.09}  # t0, by beta: packings of files count as close-packed, where they are stable to 0.0996

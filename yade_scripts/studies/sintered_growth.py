@@ -1,20 +1,20 @@
-"""Grows the compacted aggregates of Sirono & Ueno (2017), section 4: python3 yade_scripts/studies/sintered_growth.py desk
+"""Grows the compacted aggregates of Sirono & Ueno (2017), section 4.
 
-    python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    those of a table that are not there yet (desk, full, beyond, decide)
+    python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    of a table (desk, full, beyond, decide)
 
-Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive collisions"; it
-isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides head-on with itself, both
-in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is the next one's aggregate
-(yade_scripts/packings/from_run.py).
+Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive
+collisions"; it isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides
+head-on with itself, both in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is
+the next one's aggregate (yade_scripts/packings/from_run.py). A generation in which the largest piece has less than STUCK
+of the grains is tried again in other orientations, ATTEMPTS times.
 
-The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17
-needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (by eqs 14 to 19). One collision, START = 512, gives
-2.15, 2.49 and 3.01 at 1, 3 and 10 m/s (one seed). Six from START = 16 gave 2.5, 2.9 and 3.2, which Figs 6 and 17 exclude. So it is 512.
+The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at
+high V_g, and Fig. 17 needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (by eqs 14 to 19). One
+collision, START = 512, gives 2.15, 2.49 and 3.01 at 1, 3 and 10 m/s (one seed). Six from START = 16 gave 2.5, 2.9 and
+3.2, which Figs 6 and 17 exclude. So it is 512.
 
-A generation in which the largest piece has less than STUCK of the grains is tried again in other orientations, ATTEMPTS times.
-
-Packings are runs/sintered-grown/NAME.npz and NAME-b.npz, the same aggregate in two orientations: target and projectile. A second
-call makes what is missing.
+Packings are runs/sintered-grown/NAME.npz and NAME-b.npz, the same aggregate in two orientations: target and projectile.
+A second call makes what is missing.
 """
 
 import argparse
@@ -79,7 +79,8 @@ def _next(aggregate, grown, generation, folder):
         if found.grains >= STUCK * 2 * aggregate.grains:
             return found
     raise PackingError(
-        f"{grown.name}: two aggregates of {aggregate.grains} grains did not stick at {grown.velocity:g} m/s in {ATTEMPTS} "
+        f"{grown.name}: two aggregates of {aggregate.grains} grains did not stick at {grown.velocity:g} m/s in "
+        f"{ATTEMPTS} "
         f"orientations; must be a smaller growth velocity"
     )
 

@@ -1,17 +1,17 @@
 """Tables of the study of Arakawa et al. (2022, A22): collisions of two equal BPCA aggregates of ice grains.
 
-full: section 2.4, 416 collisions of aggregates of 50,000 grains, one seed. desk: an evening on two cores: the whole grid of
-B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around v_fra with 2,000, both at twice the
-time step, and the paper's own size where Fig. 1 is, with three pairs of aggregates where the paper has one. Rows stand in
-the order of their worth: whole grids of one seed after another.
+full: section 2.4, 416 collisions of aggregates of 50,000 grains, one seed. desk: an evening on two cores: the whole
+grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around v_fra with 2,000, both
+at twice the time step, and the paper's own size where Fig. 1 is, with three pairs of aggregates where the paper has
+one. Rows stand in the order of their worth: whole grids of one seed after another.
 
 prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
-(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first, then
-the others. The predictions are of all 13, which the first block alone does not test.
+(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first,
+then the others. The predictions are of all 13, which the first block alone does not test.
 
 own: the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets
-about the edge of merging first, then all 13; then six at 63.1 m/s, without drag first, so that v_fra lies between the two.
-"""
+about the edge of merging first, then all 13; then six at 63.1 m/s, without drag first, so that v_fra lies between the
+two."""
 
 from itertools import product
 
@@ -30,7 +30,8 @@ STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its l
 
 OWN_PAIRS = {REFERENCE[1]: 4, 18: 6}  # by i; v_fra is 50 to 60 m/s in the paper
 EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the same pairs
-# Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of K(0).
+# Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of
+# K(0).
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
 
 PREDICTED_GRAINS, PREDICTED_SEEDS, PREDICTED_EXPONENTS = 10_000, 2, range(17, 21)
@@ -62,8 +63,8 @@ def full():
 
 
 def prediction():
-    """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then seed
-    by seed, and one of the paper's size; then the offsets between, seed by seed."""
+    """Collisions that were predicted, without drag and with the most: of every second offset head-on ones first, then
+    seed by seed, and one of the paper's size; then the offsets between, seed by seed."""
     seeds = range(1, PREDICTED_SEEDS + 1)
     scenes = grid(PREDICTED_GRAINS, PREDICTED_EXPONENTS, seeds, REFERENCE_PICOSECONDS)
     first = [scene for scene in scenes if scene[1] in EVERY_SECOND]
@@ -72,8 +73,8 @@ def prediction():
 
 
 def own():
-    """Collisions of the paper's size: at 50.1 m/s offsets about the edge of merging first, pair by pair, then the others;
-    at 63.1 m/s pair by pair, those without drag first."""
+    """Collisions of the paper's size: at 50.1 m/s offsets about the edge of merging first, pair by pair, then the
+    others; at 63.1 m/s pair by pair, those without drag first."""
     first, faster = (
         grid(FULL_GRAINS, [i], range(1, pairs + 1), REFERENCE_PICOSECONDS) for i, pairs in OWN_PAIRS.items()
     )
@@ -107,8 +108,10 @@ def rows(scenes, folder, **others):
     return found
 
 
-HEAD = """Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {}
-Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0."""
+HEAD = (
+    "Arakawa et al. (2022), section 2.4: collisions of two equal BPCA aggregates of ice grains, B_off^2 = 0 to 1. {}\n"
+    "Units: impact: r_c,tar + r_c,pro (eq 27); velocity: m/s; viscoelasticTime, duration: s; stepFraction: t0."
+)
 
 
 def tables():
