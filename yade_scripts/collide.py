@@ -12,7 +12,8 @@ Sirono & Ueno (2017), W07 Wada et al. (2007); t0 is the time unit of the contact
 Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing was run),
 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder that can be read,
 with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does continue=FOLDER, which takes
-all parameters from the run's folder; a run that is undecided goes on with duration=... beside."""
+all parameters from the run's folder; a run that is undecided goes on with duration=... beside.
+"""
 
 import os
 import signal

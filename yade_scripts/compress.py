@@ -1,20 +1,20 @@
 """Compress an aggregate in a periodic cell whose edges shrink, as in Kataoka et al. (2013), and write a run folder.
 
-    yade -n -x yade_scripts/compress.py                           1024 grains of ice, as loose as the paper's, to a
-    filling of 0.5 yade -n -x yade_scripts/compress.py grains=4096 seed=3        any parameter by its name yade -n -x
-    yade_scripts/compress.py finalPressure=1e4         to a pressure [Pa] yade -n -x yade_scripts/compress.py
-    finalFilling=0.3 stretch=x    and then stretched along x: tensile strength python3 yade_scripts/study.py
-    compression-desk                all rows of a study's table yade -n -x yade_scripts/compress.py
-    table=yade_scripts/studies/compression-desk.table:6    one of them yade -n -x yade_scripts/compress.py --help
-    the parameters
+    yade -n -x yade_scripts/compress.py                      1024 grains of ice, to a filling of 0.5
+    yade -n -x yade_scripts/compress.py grains=4096 seed=3   any parameter by its name
+    yade -n -x yade_scripts/compress.py finalPressure=1e4    to a pressure [Pa]
+    yade -n -x yade_scripts/compress.py finalFilling=0.3 stretch=x    and then stretched along x: tensile strength
+    python3 yade_scripts/study.py compression-desk           all rows of a study's table
+    yade -n -x yade_scripts/compress.py table=yade_scripts/studies/compression-desk.table:6    one of them
+    yade -n -x yade_scripts/compress.py --help               the parameters
 
-Numbers may be written as arithmetic: strainRate=3*10**-7. K13 is Kataoka et al. (2013), A22 Arakawa et al.
-(2022), S17 Sirono & Ueno (2017), W07 Wada et al. (2007); t0 is the time unit of the contact.
+Numbers may be written as arithmetic: strainRate=3*10**-7. K13 is Kataoka et al. (2013), A22 Arakawa et al. (2022),
+S17 Sirono & Ueno (2017), W07 Wada et al. (2007); t0 is the time unit of the contact.
 
-Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing
-was run), 1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder
-that can be read, with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does
-continue=FOLDER, which takes all parameters from the run's folder.
+Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing was run),
+1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder that can be read,
+with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does continue=FOLDER, which takes
+all parameters from the run's folder.
 """
 
 import os

@@ -8,7 +8,8 @@ spheres cut out of them, then collided:
 make study-compressed does all of it. The recipe of Oshiro et al. (2025): a BCCA cluster in a periodic cell is
 compressed (Kataoka et al. 2013), and spheres are cut out where the filling is that of the CPE aggregates, to TOLERANCE:
 places in the cell are drawn until that is so. A pair comes from one cell, in two places and orientations, whose spheres
-may share grains."""
+may share grains.
+"""
 
 import os
 import sys
