@@ -7,7 +7,6 @@ from running import completed, read_arrays, read_json
 
 from analysis.measures.ledger import closure_history
 from analysis.measures.of_run import outcome_of_run
-from analysis.runs.collect import provenance
 from analysis.runs.folder import open_run
 from yade_scripts.experiments.collision import KIND
 
