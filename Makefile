@@ -221,7 +221,7 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo overwrite=1
 
 # A file's tests stay in one process: they share what they have run. CHECKED takes some two minutes of one core.
-CHECKED := tests/kernel tests/physics tests/conservation tests/packings tests/analysis
+CHECKED := tests/kernel tests/physics tests/conservation tests/equivalence/test_reference_law.py tests/analysis
 test check: all
 	$(if $(filter check,$@),@$(MAKE) --no-print-directory lint)
 	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 $(if $(filter check,$@),-q $(CHECKED),tests)
