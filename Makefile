@@ -26,7 +26,7 @@
 # make test-dustpy     the atlas in DustPy, of PyPI; make disk draws a disk with and without it
 # make test-viewer     a run's page in chromium
 # make test-edits      changes running scenes at random, a thousand sequences (EDITS=3000)
-# make test-faults     ends commands at their file-system calls (an hour); make test-mutations: forty slips (half an hour)
+# make test-mutations  forty slips, each of which a test must notice (half an hour)
 # make test-sanitizers engine, kernel, functors and checkpoints with sanitizers (a quarter of an hour): build/sanitizers.md
 # make test-debian     README's commands in fresh Debian 12 and 13 (root; an hour): build/debian.md. SYSTEMS=sid, bookworm-arm64
 # make test-arm64      the same bits of the engine on an emulated 64-bit ARM: build/arm64.md
@@ -41,7 +41,7 @@
 .DEFAULT_GOAL := all
 STUDIES := elastoplastic viscous compression sintered compressed atlas
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build known-yade always install uninstall image demo check test \
-        test-edits test-newest test-dustpy disk test-mutations test-faults test-viewer test-debian test-arm64 yade-tree \
+        test-edits test-newest test-dustpy disk test-mutations test-viewer test-debian test-arm64 yade-tree \
         test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \
         conformance docs test-docs lint format study-status tables
 
@@ -245,8 +245,8 @@ test-dustpy: build/dustpy/installed
 disk: build/dustpy/installed
 	@build/dustpy/bin/python -m analysis.atlas.adapters.disk analysis/gallery/atlas
 
-test-mutations test-faults: all
-	@$(PYTHON) tests/$(if $(filter test-faults,$@),persistence/enumerate_faults,mutations/run_mutations).py -j $(JOBS)
+test-mutations: all
+	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
 # with 160 MB of Debian; once they are there, make test has it too
 test-viewer: all

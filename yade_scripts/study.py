@@ -3,25 +3,25 @@
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, JOBS threads at once
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell and
                                                      folder; runs nothing, nor a script that the table names
-    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS tasks of
+    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS
+    tasks of
                                                      each at once; OPTIONS of sbatch: -- --time=12:00:00
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's (its duration may be longer);
-runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before anything
-runs, the time it will take is estimated from runs that have ended, or from a piece of one that is measured, and
-printed. Ctrl-C and SIGTERM stop the runs, each with
-a checkpoint. A row that runs on another machine of a shared disk is waited for, and run here if it stops there.
-Logs are in runs/logs/NAME of the table. TABLE may also be the name of
-a study's table, elastoplastic-desk, which is written into yade_scripts/studies if it isn't there. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are
-obeyed, others refused.
+runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before
+anything runs, the time it will take is estimated from runs that have ended, or from a piece of one that is measured,
+and printed. Ctrl-C and SIGTERM stop the runs, each with a checkpoint. A row that runs on another machine of a shared
+disk is waited for, and run here if it stops there. Logs are in runs/logs/NAME of the table. TABLE may also be the
+name of a study's table, elastoplastic-desk, which is written into yade_scripts/studies if it isn't there. Of
+yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are obeyed, others refused.
 
-With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a row has threads. A minute
-before its time limit a task writes its checkpoint and is queued again; rows that are in the queue already are not
-submitted. --dry-run prints the scripts, and submits nothing.
+With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a
+row has threads. A minute before its time limit a task writes its checkpoint and is queued again; rows that are in the
+queue already are not submitted. --dry-run prints the scripts, and submits nothing.
 
 Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
-others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when stopped.
-"""
+others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when
+stopped."""
 
 import argparse
 import os
@@ -90,7 +90,8 @@ def find_table(table):
 
 
 def hint(table):
-    """' (did you mean ...?)' for a table that isn't there, of those in its folder and those that come with this; or ''."""
+    """' (did you mean ...?)' for a table that isn't there, of those in its folder and those that come with this; or
+    ''."""
     folder, name = os.path.split(table)
     if os.path.exists(table):
         return ""

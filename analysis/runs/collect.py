@@ -18,27 +18,13 @@ LEVELS = 2
 
 @dataclass(frozen=True)
 class Scene:
-    """Which runs belong together.
+    """Which runs belong together."""
 
-    Parameters
-    ----------
-    name : str
-        As in "A24's scene".
-    values : dict
-        Parameters that every run has.
-    numbers : tuple of str
-        Parameters that must be numbers.
-    kind : str
-        The kind of run.
-    measured : tuple of str
-        What else a study measures (columns) that tells runs apart.
-    """
-
-    name: str
-    values: dict
-    numbers: tuple
+    name: str  # as in "A24's scene"
+    values: dict  # parameters that every run has
+    numbers: tuple  # names of parameters that must be numbers
     kind: str = COLLISION.name
-    measured: tuple = ()
+    measured: tuple = ()  # columns of a study that tell runs apart, too
 
     @property
     def key(self):
@@ -61,24 +47,12 @@ class Scene:
 
 @dataclass(frozen=True)
 class Collection:
-    """What collect() found.
+    """What collect() found."""
 
-    Parameters
-    ----------
-    runs : tuple of RunFolder
-        Ended, of the scene.
-    tables : tuple of Path
-        Files with runs of an earlier analysis.
-    notes : tuple of str
-        One a run left out for a good reason.
-    problems : tuple of str
-        One a path or run that could not be read.
-    """
-
-    runs: tuple
-    tables: tuple
-    notes: tuple
-    problems: tuple
+    runs: tuple  # of RunFolder: ended, of the scene
+    tables: tuple  # of Path: files with runs of an earlier analysis
+    notes: tuple  # of str, one a run left out for a good reason
+    problems: tuple  # of str, one a path or run that could not be read
 
 
 def collect(paths, scene):
@@ -126,7 +100,9 @@ def run_folders(paths):
                 known.add(folder.resolve())
                 found.append((folder, None))
         if not folders and os.path.isdir(path):
-            empty.append((None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"))
+            empty.append(
+                (None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below")
+            )
         elif not folders and os.path.exists(path):
             empty.append((None, f"{path}: is not a folder"))
         elif not folders:
@@ -157,14 +133,8 @@ _COUNTED = {"commits": "commit", "machines": "machine", "versions": "versions", 
 
 
 def provenance(runs):
-    """What made the runs (RunFolder).
-
-    Returns
-    -------
-    dict
-        runs (their number), commits, machines, versions, stepFractions [t0] (each {text: number of runs}), steps (their
-        sum, as if there were no shorter ones) and hours (of wall time).
-    """
+    """What made the runs (RunFolder): dict of runs (their number), commits, machines, versions and stepFractions [t0]
+    (each {text: number of runs}), steps (their sum, as if there were no shorter ones) and hours (of wall time)."""
     found = {"runs": len(runs), **{key: Counter() for key in _COUNTED}, "steps": 0, "hours": 0.0}
     for run in runs:
         record, hardware = run.record, run.record.get("hardware") or {}
@@ -194,7 +164,9 @@ def _most_first(found):
 def provenance_lines(origin):
     """The same as lines of text."""
     made = sum(origin["commits"].values())
-    more = "" if made == origin["runs"] else f" (with those that others replaced {made}, to which the following belongs)"
+    more = (
+        "" if made == origin["runs"] else f" (with those that others replaced {made}, to which the following belongs)"
+    )
     yield f"{origin['runs']} runs{more}, {origin['steps']} steps, {origin['hours']:g} h of run time"
     for key, text in _COUNTED.items():
         yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())

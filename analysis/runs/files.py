@@ -1,8 +1,9 @@
 """Reading and writing files, the one way of the analysis and the scripts.
 
-A file is written under a temporary name beside its place, .NAME.XXXXXXXX.unfinished, brought onto the disk, and renamed: a
-process that is killed leaves the old file or the new one, never a part. What is read is compared with its SHA-256 where
-there is one, and an array is only read if it is as long as its header says.
+A file is written under a temporary name beside its place, .NAME.XXXXXXXX.unfinished, brought onto the disk and renamed:
+a process that is killed leaves the old file or the new one, never a part. What is read is compared with its SHA-256
+where there is one, and an array is only read if it is as long as its header says. Writing raises OSError with
+.filename, reading RunFolderError.
 """
 
 import errno
@@ -21,28 +22,22 @@ from pathlib import Path
 import numpy as np
 
 _UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.unfinished(\.\w+)?")
+# A text that carries its own sum begins with a JSON object of which this is the first entry; summed() puts the sum in
+# the place of the zeros. Versions before 0.5.0 wrote tables of runs without one.
+SUM = "sha256"
+UNSUMMED = {SUM: "0" * 64}
+_OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
+_WITHOUT_SUM = re.compile(r'(?:# )?\{\s*"study"')
 
 
 class RunFolderError(Exception):
     """A run folder, or a file of one, that cannot be used; the message is one line: which file, and what is wrong."""
 
 
-# Writing
-
-
 def write_file(path, content):
-    """Write a file, which is whole or as it was before.
+    """Write a file (path), which is whole or as it was before.
 
-    Parameters
-    ----------
-    path : str or Path
-    content : str (written as UTF-8), bytes or a buffer
-
-    Raises
-    ------
-    OSError
-        with .filename, also where require_output() refuses the path
-    """
+    content: str (written in UTF-8), bytes or a buffer."""
     with replacing(path) as file:
         file.write(content.encode() if isinstance(content, str) else content)
 
@@ -51,17 +46,7 @@ def write_file(path, content):
 def replacing(path, ending=""):
     """A binary file, open for writing, that takes the place of `path` when the block has come to its end.
 
-    Parameters
-    ----------
-    path : str or Path
-    ending : str
-        what the temporary name ends in (".mp4"), for a program that is given .name and writes by itself
-
-    Raises
-    ------
-    OSError
-        as write_file()
-    """
+    A program that writes by itself may be given its .name, which ends in `ending` (".mp4")."""
     path = os.fspath(path)
     require_output(path)
     temporary = _temporary(path, ending)
@@ -80,7 +65,7 @@ def replacing(path, ending=""):
 
 
 def require_output(path, inputs=()):
-    """Raise OSError, with .filename, for a path that is no file, is write-protected, or is one of `inputs` (paths)."""
+    """Raise OSError for a path that is no file, is write-protected, or is one of the inputs (paths)."""
     path = os.fspath(path)
     if os.path.realpath(path) in map(os.path.realpath, inputs):
         raise OSError(errno.EINVAL, "is what is read; must be another file", path)
@@ -91,14 +76,14 @@ def require_output(path, inputs=()):
 
 
 def make_folder(path):
-    """Make a folder, and those that it is in, unless it is there. Raises OSError, with .filename."""
+    """Make a folder, and those that it is in, unless it is there."""
     if os.path.lexists(path) and not os.path.isdir(path):
         raise OSError(errno.ENOTDIR, "is a file; must be a folder", os.fspath(path))
     os.makedirs(path, exist_ok=True)
 
 
 def make_new(path, content):
-    """Make a file with its bytes at once; raises FileExistsError where there is one: of several processes one makes it."""
+    """Make a file with its bytes at once; FileExistsError where there is one: of several processes one makes it."""
     temporary = _temporary(path)
     try:
         with open(temporary, "xb") as file:
@@ -133,7 +118,7 @@ def remove_unfinished(folder):
 
 
 def sync(path):
-    """Have a file's content, or the names in a folder, on the disk; raises OSError."""
+    """Have a file's content, or the names in a folder, on the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -141,23 +126,8 @@ def sync(path):
         os.close(handle)
 
 
-# Reading
-
-
 def read_bytes(file, sha256=None):
-    """Content of a file.
-
-    Parameters
-    ----------
-    file : str or Path
-    sha256 : str, optional
-        which its SHA-256 must be, in hexadecimal digits
-
-    Raises
-    ------
-    RunFolderError
-        when it is missing, cannot be read, or has another sum
-    """
+    """Content of a file; sha256: what its SHA-256 must be, in hexadecimal digits (None: anything)."""
     try:
         content = Path(file).read_bytes()
     except FileNotFoundError:
@@ -166,14 +136,13 @@ def read_bytes(file, sha256=None):
         raise RunFolderError(f"{file}: cannot be read: {error.strerror}") from None
     found = hashlib.sha256(content).hexdigest() if sha256 else None
     if found != sha256:
-        raise RunFolderError(
-            f"{file}: not as it was written: its SHA-256 is {found[:12]}..., must be {sha256[:12]}..., as in ended"
-        )
+        must = f"must be {sha256[:12]}..., as in ended"
+        raise RunFolderError(f"{file}: not as it was written: its SHA-256 is {found[:12]}..., {must}")
     return content
 
 
 def read_text(file, sha256=None):
-    """Text of a file in UTF-8, otherwise as read_bytes()."""
+    """Text of a file in UTF-8."""
     try:
         return read_bytes(file, sha256).decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -181,7 +150,7 @@ def read_text(file, sha256=None):
 
 
 def read_json(file, sha256=None):
-    """What a JSON file holds, otherwise as read_bytes(); NaN and Infinity are no JSON."""
+    """What a JSON file holds; NaN and Infinity are no JSON."""
     try:
         return json.loads(read_text(file, sha256), parse_constant=_refuse_constant)
     except RecursionError:
@@ -199,9 +168,6 @@ def json_text(content):
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-# Arrays
-
-
 def npz(**arrays):
     """Content (a buffer) of an .npz file with these arrays."""
     content = io.BytesIO()
@@ -210,7 +176,7 @@ def npz(**arrays):
 
 
 def array_names(file):
-    """Names of the arrays of an .npz file; RunFolderError when it is missing or damaged."""
+    """Names of the arrays of an .npz file."""
     with _opened(file, read_bytes(file)) as archive:
         return _names(archive)
 
@@ -221,24 +187,17 @@ def read_arrays(file, names, optional=(), texts=(), sha256=None):
     Parameters
     ----------
     file : str or Path
-    names : sequence of str
-        arrays of numbers that must be there
-    optional : sequence of str
-        arrays of numbers that may be there
+    names, optional : sequence of str
+        Arrays of numbers that must be there, and that may be.
     texts : sequence of str
-        texts that must be there
+        Texts that must be there.
     sha256 : str, optional
-        as of read_bytes()
+        As of read_bytes().
 
     Returns
     -------
     dict
         {name: read-only array, or str}
-
-    Raises
-    ------
-    RunFolderError
-        when the file or an array is missing or damaged, or an array holds something else than numbers
     """
     with _opened(file, read_bytes(file, sha256)) as archive:
         there = set(_names(archive))
@@ -278,47 +237,19 @@ def _read_array(file, archive, name):
     read = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     with archive.open(f"{name}.npy") as member:
         shape, _, dtype = read[np.lib.format.read_magic(member)](member)
-        length = archive.getinfo(f"{name}.npy").file_size - member.tell()
-    expected = math.prod(shape) * dtype.itemsize
+        length, expected = archive.getinfo(f"{name}.npy").file_size - member.tell(), math.prod(shape) * dtype.itemsize
     if length != expected and not dtype.hasobject:  # objects, whose length no header says, are refused below
         raise RunFolderError(f"{file}: damaged: '{name}' has {length} bytes, by its header {expected:.6g}")
     with archive.open(f"{name}.npy") as member:
         return np.lib.format.read_array(member, allow_pickle=False)
 
 
-# Sums
-
-
-def sum_of(file):
-    """SHA-256 of a file, in hexadecimal digits; raises OSError."""
-    found = hashlib.sha256()
-    with open(file, "rb") as content:
-        while part := content.read(2**20):
-            found.update(part)
-    return found.hexdigest()
-
-
-def sums_text(folder, names):
-    """What `sha256sum NAME...` prints in a folder, in the order of the names; raises OSError."""
-    return "".join(f"{sum_of(os.path.join(folder, name))}  {name}\n" for name in sorted(names))
-
-
 def read_sums(file):
-    """{name: SHA-256} of a file that sums_text() has made; RunFolderError where it is missing or holds something else.
-
-    Lines that begin with # are passed over, as sha256sum does: formats before 5 had such."""
+    """{name: SHA-256} of a file as sha256sum prints it; lines that begin with # (formats before 5) are passed over."""
     lines = [line.split("  ") for line in read_text(file).splitlines() if line and not line.startswith("#")]
     if not all(len(line) == 2 and re.fullmatch("[0-9a-f]{64}", line[0]) for line in lines):
         raise RunFolderError(f"{file}: damaged: holds other lines than sums, as sha256sum prints them")
     return {name: digits for digits, name in lines}
-
-
-# A text that carries its own sum begins with a JSON object of which this is the first entry; summed() puts the sum in the
-# place of the zeros.
-SUM = "sha256"
-UNSUMMED = {SUM: "0" * 64}
-_OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
-_WITHOUT_SUM = re.compile(r'(?:# )?\{\s*"study"')
 
 
 def summed(text):
@@ -327,9 +258,7 @@ def summed(text):
 
 
 def read_summed(file):
-    """The text of a file that summed() has made; RunFolderError where it is missing, or not as it was written.
-
-    Versions before 0.5.0 wrote tables without a sum, which are read."""
+    """The text of a file that summed() has made, or of a table of a version before 0.5.0, without a sum."""
     text = read_text(file)
     if not _WITHOUT_SUM.match(text):
         require_own_sum(file, text)

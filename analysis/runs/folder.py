@@ -57,14 +57,16 @@ class State(SimpleNamespace):
         return head + textwrap.fill(names, WIDTH, initial_indent="  ", subsequent_indent="  ")
 
     def fragments(self):
-        """DataFrame with a row for each piece (grains joined by contacts), the largest first: measures.fragments.fragments."""
+        """DataFrame with a row for each piece (grains joined by contacts), the largest first:
+        measures.fragments.fragments."""
         from ..measures.fragments import fragments
 
         return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size)
 
 
 class StateSequence(Sequence):
-    """The states of a run, oldest first, each read from its file when it is looked up (RunFolderError if it is damaged).
+    """The states of a run, oldest first, each read from its file when it is looked up (RunFolderError if it is
+    damaged).
 
     files: their paths; sums: as read_ended() gives them."""
 
@@ -112,33 +114,16 @@ class StateSequence(Sequence):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RunFolder:
-    """One run.
-
-    Parameters
-    ----------
-    path : Path
-    kind : runs.format.RunKind
-    parameters : dict
-        As in the run's table.
-    derived : dict
-        Constants, in SI units.
-    record : dict
-        All of run.json.
-    history : dict
-        {name: read-only array (T,)}, as listed in kind.history.
-    states : StateSequence
-    ended : bool
-        Whether it came to its planned end.
-    """
+    """One run."""
 
     path: Path
     kind: RunKind
-    parameters: dict
-    derived: dict
-    record: dict
-    history: dict
+    parameters: dict  # as in the run's table
+    derived: dict  # constants, in SI units
+    record: dict  # all of run.json
+    history: dict  # {name: read-only array (T,)}, as kind.history lists them
     states: StateSequence
-    ended: bool
+    ended: bool  # whether it came to its planned end
 
     def __repr__(self):
         lines = (f"{name}: {text}" for name, text in self._facts())
@@ -228,15 +213,15 @@ def open_run(path):
 
 
 def read_ended(path):
-    """{file name: SHA-256} of what a run that has ended left in its folder (path), as its `ended` lists them; empty where an old format
-    has none, None where the run has not ended; RunFolderError where `ended` is damaged."""
+    """{file name: SHA-256} of what a run that has ended left in its folder (path), as its `ended` lists them; empty
+    where an old format has none, None where the run has not ended; RunFolderError where `ended` is damaged."""
     file = Path(path) / ENDED_FILE
     return read_sums(file) if file.exists() else None
 
 
 def sum_in(sums, path, name):
-    """The SHA-256 that a file of a run folder (path) must have, None where the run has no sums; RunFolderError for a file that the run has
-    not left. sums: of read_ended()."""
+    """The SHA-256 that a file of a run folder (path) must have, None where the run has no sums; RunFolderError for a
+    file that the run has not left. sums: of read_ended()."""
     if not sums:
         return None
     if name not in sums:

@@ -2,16 +2,17 @@
 
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
-    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome, time reached,
-                        what ended a compression (endedBy)
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome,
+                        time reached, what ended a compression (endedBy)
     history.npz         time series, arrays (T,)
-    states/NNNNNN.npz   the grains and their contacts at one moment; N grains, M contacts; P planes, K contacts with these
-    ended               the run came to its planned end; the SHA-256 of each of the files above, as sha256sum has them
+    states/NNNNNN.npz   the grains and their contacts at one moment: N grains, M contacts, P planes, K contacts with
+                        planes
+    ended               the run came to its planned end; the SHA-256 of the files above, as sha256sum prints them
     checkpoint/         while the run is under way, or was stopped: not part of the format
     lock                while the run is under way: on which machine (lock.py); not part of the format
 
-`ended` is written last, when all the rest is on the disk, so that there is none without sums. It is what sha256sum prints, and
-`sha256sum -c ended` checks it. Files that others put into the folder are not in it.
+`ended` is written last, when all the rest is on the disk, so that there is none without sums. It is what sha256sum
+prints, and `sha256sum -c ended` checks it. Files that others put into the folder are not in it.
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
@@ -39,8 +40,8 @@ def state_file(number):
 class Channel:
     """An energy channel [J]; the sum of all is constant in time.
 
-    kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start against what holds or moves the
-    grains). colour: in figures. since: the first format that has it; in older folders it is zero."""
+    kind: STORED (held now), LOST (dissipated since the start) or WORK (done since the start against what holds or
+    moves the grains). colour: in figures. since: the first format that has it; in older folders it is zero."""
 
     name: str
     kind: str
@@ -80,9 +81,9 @@ COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}
 class Quantity:
     """An array of a history or a state.
 
-    shape: of "T", "N", "M", "P", "K" (samples, grains, contacts, planes, contacts with these) and numbers; kind: numpy's letter
-    of the type, "f", "i" or "b"; optional: left out where the scene has none; gaps: may be NaN in places; positive: all values
-    are > 0; since: the first format that has it, zeros stand for it in older folders."""
+    shape: of "T", "N", "M", "P", "K" (samples, grains, contacts, planes, contacts with these) and numbers; kind:
+    numpy's letter of the type, "f", "i" or "b"; optional: left out where the scene has none; gaps: may be NaN in
+    places; positive: all values are > 0; since: the first format that has it, zeros stand for it in older folders."""
 
     name: str
     shape: tuple
@@ -107,8 +108,8 @@ class RunKind:
 
     @property
     def history(self):
-        """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, broken bonds by mode
-        (where there were bonds at the start), the kind's own."""
+        """Quantities of history.npz, in the order of its columns: time, the channels, the contacts, broken bonds by
+        mode (where there were bonds at the start), the kind's own."""
         channels = (Quantity(c.name, ("T",), "J", c.label, since=c.since) for c in CHANNEL_TABLE)
         return (TIME_SERIES, *channels, CONTACTS, *BONDS, *self.series)
 
@@ -137,8 +138,8 @@ STATE = (
     Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
     Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),
     Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
-    Quantity("contact_neck", ("M",), "1", "of a bond, the neck's radius over that of the grains; 0 of other contacts", optional=True),
-    Quantity("bonds_broken", (4,), "", "sintered bonds broken since the start: by stretching (or pressing), sliding, rolling, twisting", "i", optional=True),
+    Quantity("contact_neck", ("M",), "1", "of a bond: the neck's radius over the grains'; else 0", optional=True),
+    Quantity("bonds_broken", (4,), "", "sintered bonds broken since the start, as BROKEN_BONDS", "i", optional=True),
     Quantity("plane_axis", ("P",), "", "of each plane, the axis across which it lies: 0, 1, 2", "i", optional=True),
     Quantity("plane_position", ("P",), "m", "of each plane, where on that axis", optional=True),
     Quantity("plane_contacts", ("K", 2), "", "rows of the grain and of the plane of a contact", "i", optional=True),
@@ -146,29 +147,31 @@ STATE = (
     Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
 )
 
+# Of a collision on a plate, d is the aggregate's radius less its mean distance.
 RESTING = "resting"
 COLLISION = RunKind(
     "collision",
     (
-        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11) of equal aggregates; NaN with all grains on one side. On a plate: the aggregate's radius less its mean distance", gaps=True),
-        Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13) of equal aggregates, positive while approaching", gaps=True),
-        Quantity("contacts_between", ("T",), "", "number of contacts between the two aggregates, or with the plate", "i"),
+        Quantity("d", ("T",), "m", "compression length (A24 eqs 10, 11); NaN with all grains on one side", gaps=True),
+        Quantity("v", ("T",), "m/s", "mutual velocity (A24 eqs 12, 13), positive while approaching", gaps=True),
+        Quantity("contacts_between", ("T",), "", "contacts between the aggregates, or with the plate", "i"),
         Quantity("formed", ("T",), "", "contacts formed since the start (A22 N_con)", "i", optional=True),
         Quantity("broken", ("T",), "", "contacts broken since the start (A22 N_cut)", "i", optional=True),
-        Quantity(RESTING, ("T",), "", "1: no piece can change any more, 0: one may, NaN: not looked at; of runs that end early", optional=True, gaps=True),
+        Quantity(RESTING, ("T",), "", "1: no piece can change any more, NaN: not looked at", optional=True, gaps=True),
     ),
     aggregates=2,
 )
 
+# Between the plates of a piston, filling, pressures and edges are of the space between them.
 COMPRESSION = RunKind(
     "compression",
     (
-        Quantity("filling", ("T",), "1", "volume filling factor of the cell (K13 eq 22), or between the plates"),
-        Quantity("pressure", ("T",), "Pa", "pressure by the virial (K13 eq 21), or mean force on the two plates over their area, at that moment"),
+        Quantity("filling", ("T",), "1", "volume filling factor of the cell (K13 eq 22)"),
+        Quantity("pressure", ("T",), "Pa", "by the virial (K13 eq 21), or mean force on the plates over their area"),
         Quantity("kinetic_pressure", ("T",), "Pa", "the part of it that is kinetic, 2 K/(3 V); 0 between plates"),
         Quantity("piston_pressure", ("T",), "Pa", "between plates: that on the moving one", optional=True),
         Quantity("coordination", ("T",), "1", "mean number of contacts of a grain"),
-        *(Quantity(f"edge_{axis}", ("T",), "m", f"edge of the cell along {axis}; between plates their distance") for axis in "xyz"),
+        *(Quantity(f"edge_{axis}", ("T",), "m", f"edge of the cell along {axis}") for axis in "xyz"),
     ),
     aggregates=1,
 )
@@ -181,40 +184,25 @@ RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")
 
 # Parameters in run.json that are words. A test compares the list with the scripts' own, as below.
-PARAMETER_WORDS = ("packing", "file", "projectileFile", "sizes", "target", "boundary", "stretch", "material", "engine", "limit")
+PARAMETER_WORDS = tuple("packing file projectileFile sizes target boundary stretch material engine limit".split())
 
-# Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's own are
-# theirs. A test compares the list with the scripts' own.
-PARAMETER_UNITS = {
-    "velocity": "m/s",
-    "impact": "1",
-    "neck": "1",
-    "duration": "s",
-    "impactStepFraction": "t0",
-    "filling": "1",
-    "radius": "grain radii",
-    "sizeRatio": "1",
-    "sizeFraction": "1",
-    "sizeSpread": "1",
-    "initialOverlap": "of that at rest",
-    "grainRadius": "m",
-    "young": "Pa",
-    "poisson": "1",
-    "density": "kg/m^3",
-    "surfaceEnergy": "J/m^2",
-    "criticalRolling": "m",
-    "viscoelasticTime": "s",
-    "stepFraction": "t0",
-    "tolerance": "1",
-    "slidingStiffnessFactor": "1",
-    "checkpointInterval": "s",
-    "strainRate": "1/t0",
-    "linearDamping": "1",
-    "initialFilling": "1",
-    "finalFilling": "1",
-    "finalPressure": "Pa",
-    "stretchFilling": "1",
+# Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's
+# own are theirs. A test compares the list with the scripts' own.
+_BY_UNIT = {
+    "m/s": "velocity",
+    "m": "grainRadius criticalRolling",
+    "s": "duration viscoelasticTime checkpointInterval",
+    "t0": "stepFraction impactStepFraction",
+    "1/t0": "strainRate",
+    "Pa": "young finalPressure",
+    "kg/m^3": "density",
+    "J/m^2": "surfaceEnergy",
+    "grain radii": "radius",
+    "of that at rest": "initialOverlap",
+    "1": "impact neck filling initialFilling finalFilling stretchFilling sizeRatio sizeFraction sizeSpread poisson "
+    "tolerance slidingStiffnessFactor linearDamping",
 }
+PARAMETER_UNITS = {name: unit for unit, names in _BY_UNIT.items() for name in names.split()}
 
 SAME = 1e-9  # relative: two numbers that agree so far are one value of a parameter
 

@@ -1,10 +1,10 @@
 """Which process has a run folder, from the folder alone.
 
-A run holds a lock of the kernel (flock) on its folder as long as it lives, which only its own machine sees, and makes the file
-`lock` in it, which every machine of a shared disk sees: host, process and job of Slurm. The file goes at any end of the run
-but a kill. One that is left is over when it is of this machine, where nothing holds the folder any more, or when Slurm says
-that its job has ended. Of another machine nothing else can tell: such a folder is taken for one in use.
-"""
+A run holds a lock of the kernel (flock) on its folder as long as it lives, which only its own machine sees, and makes
+the file `lock` in it, which every machine of a shared disk sees: host, process and job of Slurm. The file goes at any
+end of the run but a kill. One that is left is over when it is of this machine, where nothing holds the folder any
+more, or when Slurm says that its job has ended. Of another machine nothing else can tell: such a folder is taken for
+one in use."""
 
 import fcntl
 import json
@@ -33,25 +33,13 @@ class InUse(Exception):
 
 @dataclass(frozen=True)
 class Lock:
-    """What the file `lock` says.
-
-    Parameters
-    ----------
-    host, boot : str
-        The machine, and since which start of it.
-    pid : int
-        The process.
-    job : str or None
-        Of Slurm, with the task of an array (12_3).
-    restarts : int
-        How often Slurm had begun the job anew.
-    """
+    """What the file `lock` says."""
 
     host: str = "an unknown machine"
-    boot: str = ""
+    boot: str = ""  # since which start of the machine
     pid: int = 0
-    job: str | None = None
-    restarts: int = 0
+    job: str | None = None  # of Slurm, with the task of an array (12_3)
+    restarts: int = 0  # how often Slurm had begun the job anew
 
     @property
     def is_here(self):
@@ -80,9 +68,8 @@ def take(folder):
             raise InUse("another run is writing there; must be another folder") from None
         file, before = os.path.join(folder, LOCK_FILE), read_lock(folder)
         if before and not _is_over(before):
-            raise InUse(
-                f"another run is writing there, {before}; must be another folder, or, if that run was killed, {file} removed"
-            )
+            must = f"must be another folder, or, if that run was killed, {file} removed"
+            raise InUse(f"another run is writing there, {before}; {must}")
         if before:
             os.unlink(file)
         job, restarts = this_job()
@@ -122,8 +109,11 @@ def read_lock(folder):
 
 
 def is_held(folder):
-    """Whether a process of this machine holds the kernel's lock on a folder (path): without taking it, from the kernel's list."""
-    held = r"\d+: FLOCK +\S+ +\S+ +-?\d+ +[0-9a-f]+:[0-9a-f]+:(\d+) "  # of one that waits for it, '->' follows the number
+    """Whether a process of this machine holds the kernel's lock on a folder (path): without taking it, from the
+    kernel's list."""
+    held = (
+        r"\d+: FLOCK +\S+ +\S+ +-?\d+ +[0-9a-f]+:[0-9a-f]+:(\d+) "  # of one that waits for it, '->' follows the number
+    )
     try:
         inode = str(os.stat(folder).st_ino)
         with open("/proc/locks") as lines:
@@ -162,7 +152,8 @@ def this_job():
 
 
 def states_of_job(job):
-    """{job with its array task, such as 12_3: state} of a job of Slurm (its number, text), none of a job that is long over.
+    """{job with its array task, such as 12_3: state} of a job of Slurm (its number, text), none of a job that is long
+    over.
 
     None where squeue has no answer. It is called once for all tasks."""
     if job not in _ANSWERS or time.monotonic() - _ANSWERS[job][0] > SQUEUE_AGAIN:
@@ -171,7 +162,8 @@ def states_of_job(job):
 
 
 def why_unknown(job):
-    """Why squeue had no answer for a job when states_of_job() looked, in a few words; None where it had one, or isn't there."""
+    """Why squeue had no answer for a job when states_of_job() looked, in a few words; None where it had one, or isn't
+    there."""
     return _ANSWERS[job][2]
 
 

@@ -1,4 +1,5 @@
-"""What has become of a run, and whether its files are as the run has left them, from its folder alone: of any machine."""
+"""What has become of a run, and whether its files are as the run has left them, from its folder alone: of any
+machine."""
 
 import os
 import time
@@ -20,29 +21,14 @@ NO_SUMS = "has no sums (of a version before 0.5.0): damage that leaves it readab
 
 @dataclass(frozen=True)
 class State:
-    """What has become of a run.
+    """What has become of a run."""
 
-    Parameters
-    ----------
-    kind : str
-        DONE, RUNNING, WAITING (it was stopped, killed or has not begun) or FAILED.
-    progress : float
-        0 to 1.
-    seconds : float or None
-        Wall time spent.
-    left : float or None
-        Wall time left by the run's own pace [s].
-    note : str
-    host : str or None
-        The machine on which it is running.
-    """
-
-    kind: str
-    progress: float = 0.0
-    seconds: float | None = None
-    left: float | None = None
+    kind: str  # DONE, RUNNING, WAITING (it was stopped, killed or has not begun) or FAILED
+    progress: float = 0.0  # 0 to 1
+    seconds: float | None = None  # wall time spent
+    left: float | None = None  # wall time left by the run's own pace [s]
     note: str = ""
-    host: str | None = None
+    host: str | None = None  # the machine on which it is running
 
 
 def state(folder):
@@ -64,7 +50,8 @@ def state(folder):
 
 
 def running(folder, run, lock):
-    """State of a run that is under way. Its pace is that of the wall time and the progress when the history was last written.
+    """State of a run that is under way. Its pace is that of the wall time and the progress when the history was last
+    written.
 
     run: its run.json (dict); lock: its lock.Lock."""
     progress = progress_of(folder, run)
@@ -125,7 +112,8 @@ def _spent(folder, run):
 
 
 def verify_run(folder):
-    """([what differs from the sums that the run has left], [what else there is to say]) of a run folder (path), in lines."""
+    """([what differs from the sums that the run has left], [what else there is to say]) of a run folder (path), in
+    lines."""
     folder = Path(folder)
     try:
         sums = read_ended(folder)

@@ -20,34 +20,21 @@ from .folder import open_run
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
 ENDING = ".csv"
-# With these pandas.read_csv gives numbers the bits that were written: from 3.1 on it does so by itself, and warns of the option.
+# With these pandas.read_csv gives numbers the bits that were written: from 3.1 on it does so by itself, and warns of
+# the option.
 EXACTLY = {} if tuple(map(int, pandas.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
 
 
 @dataclass(frozen=True)
 class Column:
-    """What a column holds.
-
-    Parameters
-    ----------
-    name : str
-    unit : str
-        '' for numbers of things and words.
-    meaning : str
-    kind : str
-        numpy's letter of the type ("f", "i", "b", "O" for words).
-    gaps : bool
-        Whether it may have no value in places.
-    absent : float or None
-        Its value in tables that lack it (None: they cannot be read).
-    """
+    """What a column holds."""
 
     name: str
-    unit: str
+    unit: str  # '' of numbers of things and words
     meaning: str
-    kind: str = "f"
-    gaps: bool = False
-    absent: float | None = None
+    kind: str = "f"  # numpy's letter of the type: "f", "i", "b", "O" for words
+    gaps: bool = False  # whether it may have no value in places
+    absent: float | None = None  # its value in tables that lack it; None: they cannot be read
 
 
 class TableError(Exception):
@@ -60,7 +47,9 @@ class NoRunFolder(Exception):
 
 def make_table(measured):
     """DataFrame from (folder, {column: value}) of each run."""
-    rows = [{RUN: printable(Path(folder).absolute().name), FOLDER: str(folder), **values} for folder, values in measured]
+    rows = [
+        {RUN: printable(Path(folder).absolute().name), FOLDER: str(folder), **values} for folder, values in measured
+    ]
     return pandas.DataFrame(rows)
 
 
@@ -70,14 +59,16 @@ def columns_text(columns):
 
 
 def described(table, columns):
-    """The DataFrame with the units and meanings of its columns in .attrs["units"] and .attrs["meanings"], {name: text}."""
+    """The DataFrame with the units and meanings of its columns in .attrs["units"] and .attrs["meanings"], {name:
+    text}."""
     table.attrs["units"] = {column.name: column.unit for column in columns}
     table.attrs["meanings"] = {column.name: column.meaning for column in columns}
     return table
 
 
 def run_folder(row):
-    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where it is damaged."""
+    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where it is
+    damaged."""
     if not isinstance(row.folder, str):
         raise NoRunFolder(row.run)
     return open_run(row.folder)

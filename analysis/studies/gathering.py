@@ -10,6 +10,7 @@ from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
 from ..runs.collect import collect, joined, provenance
 from ..runs.files import RunFolderError
+from ..runs.format import value_text
 from ..runs.table import FOLDER, RUN, TableError, make_table, read_table, table_text
 from .columns import NotMeasured
 
@@ -126,7 +127,7 @@ def _end(measured):
 
 
 def _key(study, values):
-    return tuple(v if isinstance(v := values[name], str) else f"{v:.9g}" for name in study.scene.key)
+    return tuple(value_text(values[name]) for name in study.scene.key)
 
 
 def _unlike(study, runs):

@@ -25,6 +25,15 @@ def test_what_is_no_file_is_refused_and_stays(tmp_path, make):
     assert refused.value.filename == str(tmp_path / "page.html") and not (tmp_path / "page.html").is_file()
 
 
+def test_content_is_on_the_disk_before_it_takes_the_name(tmp_path, monkeypatch):
+    calls = []
+    for name in ("fsync", "replace"):
+        real = getattr(os, name)
+        monkeypatch.setattr(os, name, lambda *given, name=name, real=real: (calls.append(name), real(*given))[1])
+    write_file(tmp_path / "page.html", "new")
+    assert calls == ["fsync", "replace", "fsync"]
+
+
 def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     (tmp_path / "page.html").symlink_to("mine.txt")

@@ -1,12 +1,12 @@
 """Run folders written for tests, in the format that the collision script writes."""
 
+import hashlib
 import json
 import re
 from math import pi
 
 import numpy as np
 
-from analysis.runs.files import sums_text
 from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
 from yade_scripts import packings
@@ -77,8 +77,11 @@ def write_run(path, run_record, history, states, ended=True):
 
 def seal(path):
     """Write the sums of a folder's files, as they are now."""
-    names = [file.relative_to(path).as_posix() for file in path.glob("**/*") if file.suffix in (".json", ".npz")]
-    (path / ENDED_FILE).write_text(sums_text(path, names))
+    files = sorted(file for file in path.glob("**/*") if file.suffix in (".json", ".npz"))
+    lines = [
+        f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.relative_to(path).as_posix()}\n" for file in files
+    ]
+    (path / ENDED_FILE).write_text("".join(lines))
 
 
 def unseal(path):

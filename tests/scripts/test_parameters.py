@@ -34,7 +34,7 @@ def complete(texts, constants=ICE_PAIR, threads=1):
 def test_defaults_are_the_scene_of_the_demo_and_stay():
     given = parse({})
     assert (given.filling, given.radius, given.grains) == (0.4, 20, 3200)
-    assert given.velocity == 10**0.5 and given.out == "runs/collide-ice-f0.4-R20-v3.162-s1"
+    assert given.velocity == 10**0.5 and given.out == "runs/collide-ice-f0.4-R20-v3.16227766-s1"
     found = complete({})
     missing = {name for name, value in found.as_dict().items() if value is None}
     files, sizes = {"projectileGrains", "projectileFile", "file"}, {"sizeRatio", "sizeFraction", "sizeSpread"}
@@ -200,7 +200,7 @@ def test_threads_of_the_functors_are_those_of_yade_and_of_the_engine_its_own():
 def test_names_of_run_folders():
     assert parse({"impact": "0.5"}).out.endswith("-s1-impact0.5")
     assert parse({"threads": 2, "resume": 1}).out == parse({}).out
-    assert parse({"packing": "bcca", "neck": 0.3}).out == "runs/collide-ice-bcca-N1024-v3.162-s1-neck0.3"
+    assert parse({"packing": "bcca", "neck": 0.3}).out == "runs/collide-ice-bcca-N1024-v3.16227766-s1-neck0.3"
     assert parse({}, "a/b c,seed=1").out == "runs/a_b_c,seed=1"
     assert parse({}, "../..").out == "runs/_.."
     assert parse({"out": "/tmp/x"}, "ignored").out == "/tmp/x"

@@ -14,7 +14,7 @@ from analysis.measures.of_run import outcome_of_run
 from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.files import SUM
 from analysis.runs.folder import open_run
-from analysis.runs.format import COLLISION, RESTING
+from analysis.runs.format import COLLISION, RESTING, value_text
 from yade_scripts import packings, stability
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
@@ -135,12 +135,12 @@ class CollisionParameters(AggregateParameters, RunParameters):
         return self.changed(grains=self.projectileGrains or self.grains, file=self.projectileFile or self.file)
 
     def title(self):
-        """collide-ice-f0.4-R20-v3.162-s1, collide-ice-bcca-N1024-v3.162-s1 ..., and the names of what is in it."""
-        size = f"f{self.filling:g}-R{self.radius:.4g}" if self.packing == "cpe" else self.packing
+        """collide-ice-f0.4-R20-v3-s1, collide-ice-bcca-N1024-v3-s1 ..., and the names of what is in it."""
+        size = f"f{value_text(self.filling)}-R{value_text(self.radius)}" if self.packing == "cpe" else self.packing
         size += f"-N{self.grains}" if self.is_grown else ""
         target = f"{WALL}-" if self.target == WALL else ""
         in_name = ("target", "material", "packing", "filling", "radius", "grains", "velocity", "seed")
-        return f"collide-{target}{self.material}-{size}-v{self.velocity:.4g}-s{self.seed}", in_name
+        return f"collide-{target}{self.material}-{size}-v{value_text(self.velocity)}-s{self.seed}", in_name
 
 
 # ---- the scene ----

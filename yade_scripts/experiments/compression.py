@@ -11,7 +11,7 @@ from math import log, pi
 import numpy as np
 
 from analysis.measures.periodic_cell import AVERAGED, contact_pressure, filling_factor, kinetic_pressure
-from analysis.runs.format import COMPRESSION
+from analysis.runs.format import COMPRESSION, value_text
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments.compression_end import (
     AXES,
@@ -125,7 +125,7 @@ class CompressionParameters(GrainParameters, RunParameters):
     def title(self):
         """compress-ice-N1024-Cv3e-07-s1 or compress-walls-ice-..., and the names of what is in it."""
         walls = f"{WALLS}-" if self.boundary == WALLS else ""
-        name = f"compress-{walls}{self.material}-N{self.grains}-Cv{self.strainRate:g}-s{self.seed}"
+        name = f"compress-{walls}{self.material}-N{self.grains}-Cv{value_text(self.strainRate)}-s{self.seed}"
         return name, ("boundary", "material", "grains", "strainRate", "seed")
 
     def filled_in(self):

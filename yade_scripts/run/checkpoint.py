@@ -1,10 +1,9 @@
 """Checkpoints: what a run needs to resume to the same bits after it was stopped or killed.
 
-The folder checkpoint/ of a run holds scene-STEP.yade (O.save: the bodies and the engine's arrays) and recorder.npz: the
-history so far, and whose checkpoint this is, with the sums of the scene and of the states before it. It is written after the
-scene, so that at any moment there is one whole checkpoint, or none. The fused engine resumes to the same bits; YADE's own
-loop may add up forces in another order after loading, so to rounding.
-"""
+The folder checkpoint/ of a run holds scene-STEP.yade (O.save: the bodies and the engine's arrays) and recorder.npz:
+the history so far, and whose checkpoint this is, with the sums of the scene and of the states before it. It is
+written after the scene, so that at any moment there is one whole checkpoint, or none. The fused engine resumes to the
+same bits; YADE's own loop may add up forces in another order after loading, so to rounding."""
 
 import json
 import mmap
@@ -30,10 +29,10 @@ def exists(run_folder):
 class Checkpoint:
     """A checkpoint read from a run folder's path.
 
-    .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far, .interval (small
-    steps between samples), .states (number of states written), .sums {file: SHA-256} of scene and states, .scene the name of
-    the scene's file. Raises CheckpointError when it can't be read; scene and states are not read until require_whole().
-    """
+    .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far,
+    .interval (small steps between samples), .states (number of states written), .sums {file: SHA-256} of scene and
+    states, .scene the name of the scene's file. Raises CheckpointError when it can't be read; scene and states are
+    not read until require_whole()."""
 
     def __init__(self, run_folder):
         self.run_folder, self.folder = run_folder, os.path.join(run_folder, CHECKPOINT_FOLDER)
@@ -56,8 +55,8 @@ class Checkpoint:
     def require_agreement(self, difference, made_with):
         """Raise CheckpointError unless it was written by this software, and is of the run that is wanted.
 
-        difference: of its run from the wanted one (resuming.difference()), or None; made_with: as report.made_with() gives it.
-        The layout of what YADE saves belongs to one build."""
+        difference: of its run from the wanted one (resuming.difference()), or None; made_with: as report.made_with()
+        gives it. The layout of what YADE saves belongs to one build."""
         for name, version in (("YADE", "yade"), ("contact_law", "contact_law")):
             written, present = self.run["versions"][version], made_with["versions"][version]
             if written != present:

@@ -12,8 +12,8 @@ MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
 
 class Estimate(NamedTuple):
-    """What a run is about to take: number of grains, mean number of contacts, small steps until its end; which share of all
-    that fit into its duration these are."""
+    """What a run is about to take: number of grains, mean number of contacts, small steps until its end; which share
+    of all that fit into its duration these are."""
 
     grains: float
     contacts: float
@@ -26,17 +26,15 @@ class Scene:
     """A run that is ready to be built in YADE.
 
     parameters: of the kind, complete, with a duration and a number as stepFraction; constants: of a contact, as
-    run.scene.pair_constants() gives them; derived: what run.json tells beside the grains and constants;
-    aggregate: (N,) int, the aggregate of each grain; build(): makes the bodies (and the cell);
-    series(state): {name: value} of the kind's own series, state as contact_law.snapshot() with `aggregate`;
-    law: attributes of the contact law, the same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys;
-    energy_is_conserved: whether all channels together are constant (not with moving boundaries and the functors);
-    control(recorder, state): called after each sample, may change the scene (a cell's velGrad); True: the run is at its
-    end, before `duration` is over. It must follow from the recorder's history, the state and the scene alone, so that
-    a run resumes. ended_by(recorder): what brought a run to its end, in a few words, or None; interval: small steps between
-    samples, at most;
-    step_choice: how stepFraction came about, in one line.
-    """
+    run.scene.pair_constants() gives them; derived: what run.json tells beside the grains and constants; aggregate:
+    (N,) int, the aggregate of each grain; build(): makes the bodies (and the cell); series(state): {name: value} of
+    the kind's own series, state as contact_law.snapshot() with `aggregate`; law: attributes of the contact law, the
+    same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys; energy_is_conserved: whether all channels together
+    are constant (not with moving boundaries and the functors); control(recorder, state): called after each sample,
+    may change the scene (a cell's velGrad); True: the run is at its end, before `duration` is over. It must follow
+    from the recorder's history, the state and the scene alone, so that a run resumes. ended_by(recorder): what
+    brought a run to its end, in a few words, or None; interval: small steps between samples, at most; step_choice:
+    how stepFraction came about, in one line."""
 
     parameters: Any
     constants: Mapping
@@ -65,9 +63,8 @@ class Kind:
     materials.GrainParameters and run.parameters.RunParameters, with a field `duration` [s] and the method title().
     prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and PackingError.
     estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a run.json should
-    hold of parameters that are None and follow from the run itself. why_undecided(run folder) -> why what the run is about is not
-    decided at its end, in a few words, or None.
-    """
+    hold of parameters that are None and follow from the run itself. why_undecided(run folder) -> why what the run is
+    about is not decided at its end, in a few words, or None."""
 
     format: RunKind
     parameters: type
@@ -99,8 +96,8 @@ class Schedule:
         return self.steps // self.interval
 
     def samples_after(self, iteration, fused):
-        """Number of samples taken when O.iter is `iteration`. fused: an O.step is all steps between two samples, and the
-        start is sampled first; otherwise the first step of each interval begins with a sample."""
+        """Number of samples taken when O.iter is `iteration`. fused: an O.step is all steps between two samples, and
+        the start is sampled first; otherwise the first step of each interval begins with a sample."""
         return iteration + 1 if fused else (iteration - 1) // self.interval + 1
 
     @classmethod

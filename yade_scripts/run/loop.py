@@ -9,9 +9,9 @@ from analysis.progress import tqdm
 def run(steps, recorder, runner, begin, checkpoints):
     """Call begin(), and step until that many O.steps are taken or the scene is at its end.
 
-    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being taken, with a
-    checkpoint and one more step that records where it stopped; the outcome is then "interrupted". A scene from a checkpoint has
-    taken some of the steps; one that has ended before its time (recorder.finished) takes no more.
+    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being taken,
+    with a checkpoint and one more step that records where it stopped; the outcome is then "interrupted". A scene from
+    a checkpoint has taken some of the steps; one that has ended before its time (recorder.finished) takes no more.
 
     Returns
     -------

@@ -1,4 +1,5 @@
-"""Parameters of every kind of run (how it is stepped, where it is written), and where a script's parameters come from."""
+"""Parameters of every kind of run (how it is stepped, where it is written), and where a script's parameters come
+from."""
 
 import hashlib
 import os
@@ -116,7 +117,8 @@ class RunParameters(Parameters):
 
 
 def file_name(text, others="-_.,=+"):
-    """text as the name of one file: letters, digits and `others`, the rest as _; a long one ends in a hash of the text."""
+    """text as the name of one file: letters, digits and `others`, the rest as _; a long one ends in a hash of the
+    text."""
     name = "".join(c if c.isalnum() or c in others else "_" for c in text)
     if len(name.encode()) <= LONGEST:
         return name

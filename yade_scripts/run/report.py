@@ -64,8 +64,8 @@ class Report:
         self._write("running")
 
     def end(self, outcome, status, time):
-        """Write the outcome, the time that was reached [s] (None: none) and, if the run came to its end, the mark of that;
-        print one line; the exit status, which is `status` unless something can't be written."""
+        """Write the outcome, the time that was reached [s] (None: none) and, if the run came to its end, the mark of
+        that; print one line; the exit status, which is `status` unless something can't be written."""
         self.run["timeReached"] = time
         try:
             self._write(outcome)

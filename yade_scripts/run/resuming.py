@@ -1,4 +1,5 @@
-"""Which run a folder holds: whether it is the one that is wanted, and with which parameters it goes on. Needs no YADE."""
+"""Which run a folder holds: whether it is the one that is wanted, and with which parameters it goes on. Needs no
+YADE."""
 
 import os
 import sys
@@ -18,9 +19,10 @@ OWN = "out", "overwrite", "resume"
 def difference(kind, wanted, run, but=()):
     """The first parameter in which a run is not what is wanted.
 
-    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run that was continued has
-    a longer duration than is wanted, and is what is wanted all the same. A step that is still to be chosen is that of any run
-    that chose it for the same tolerance; a number is compared as such, whether or not it was chosen.
+    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run that was
+    continued has a longer duration than is wanted, and is what is wanted all the same. A step that is still to be
+    chosen is that of any run that chose it for the same tolerance; a number is compared as such, whether or not it
+    was chosen.
 
     Parameters
     ----------

@@ -59,8 +59,8 @@ def pair_constants(grains, neck=0.0, linearDamping=0.0):
     """The plugin's constants (SI) of a contact between two grains of the run, and of a bond under 'bond'.
 
     grains: materials.GrainParameters with slidingStiffnessFactor. The former are of grains that have not sintered, as
-    packings and the time unit have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond and shrunkRadius [m].
-    """
+    packings and the time unit have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond
+    and shrunkRadius [m]."""
     two = 2 * (material_of(grains), grains.grainRadius)
     functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
         linearDamping=linearDamping, slidingStiffnessFactor=grains.slidingStiffnessFactor
@@ -140,7 +140,8 @@ def resume(scene, schedule, recorder, saved):
 
 
 def functor_engines(grain_radius, runner, limit="held", **law):
-    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole step."""
+    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole
+    step."""
     return [
         ForceResetter(),
         InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),

@@ -61,7 +61,8 @@ class StudyFolder:
             ) from None
 
     def cost(self, rows, states):
-        """Cost from the rows that have ended, and from what was measured; the same one until there is more of either."""
+        """Cost from the rows that have ended, and from what was measured; the same one until there is more of
+        either."""
         ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
         try:
             piece = Piece(**{name: float(number) for name, number in read_json(self.file("speed.json")).items()})
@@ -125,7 +126,8 @@ class StudyFolder:
 
 
 class Batch:
-    """Rows at work, as many at once as `threads` allows, by workers in sessions of their own: Ctrl-C reaches this process alone."""
+    """Rows at work, as many at once as `threads` allows, by workers in sessions of their own: Ctrl-C reaches this
+    process alone."""
 
     def __init__(self, folder, rows, threads):
         self._folder, self._threads = folder, threads
@@ -174,7 +176,8 @@ class Batch:
         """A worker without a row: one that there is, or a new one, which tells the log how it starts."""
         free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
         if not free:
-            # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process is killed.
+            # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process
+            # is killed.
             of_process = dict(start_new_session=True, pass_fds=[self._folder.held])
             free.append(Worker(log, [f"--nice={NICE}"], **of_process))
             self._workers += free
@@ -184,9 +187,8 @@ class Batch:
 class Worker:
     """A process of YADE that runs rows one after another (worker.py), idle until it is given one.
 
-    It is started without a shell: names are never anything else than names.
-    log: the file to which YADE's own messages go as it starts; options: more of yade's; process: more of subprocess.Popen's.
-    """
+    It is started without a shell: names are never anything else than names. log: the file to which YADE's own
+    messages go as it starts; options: more of yade's; process: more of subprocess.Popen's."""
 
     def __init__(self, log, options=(), pass_fds=(), **process):
         self.row = self.run = None

@@ -1,11 +1,11 @@
-"""How long the rows of a study take: a model of a run's time, times the pace of runs that have ended and of a measured piece.
+"""How long the rows of a study take: a model of a run's time, times the pace of runs that have ended and of a
+measured piece.
 
     yade -n -x yade_scripts/runner/cost.py SCRIPT radius=40 filling=0.3
 
-measures a piece of a run of a script in rows.KINDS, and prints one line of JSON. setup: seconds of building the run; step: seconds
-of a small step of the fused engine, among its first `steps`. Both of the clock, as the runs will take them: on a machine that is
-busy with other work, more than of processor time.
-"""
+measures a piece of a run of a script in rows.KINDS, and prints one line of JSON. setup: seconds of building the run;
+step: seconds of a small step of the fused engine, among its first `steps`. Both of the clock, as the runs will take
+them: on a machine that is busy with other work, more than of processor time."""
 
 import heapq
 import json
@@ -21,7 +21,8 @@ if __name__ == "__main__":
     sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0])))))
 from yade_scripts.run.kind import Schedule
 
-# Seconds of a usual processor (a core of an AMD EPYC of 2024), of runs of 60 to 51,200 grains, by processor time; linear in the
+# Seconds of a usual processor (a core of an AMD EPYC of 2024), of runs of 60 to 51,200 grains, by processor time;
+# linear in the
 # grains: what is there of any run, and what a grain adds.
 STEP, CONTACT = (0.8e-6, 5e-9), 14e-9  # a small step of the fused engine: also of each contact
 CACHE_EXPONENT = 0.07  # grains and contacts of large scenes take longer: with this power of their number
@@ -44,8 +45,8 @@ MEASURED, AT_ONCE = (
 
 @dataclass(frozen=True)
 class Piece:
-    """A measured piece of a row's run: pace and setup are the seconds of its steps and of setting it up, over those of a
-    usual processor; start: seconds in which YADE starts."""
+    """A measured piece of a row's run: pace and setup are the seconds of its steps and of setting it up, over those
+    of a usual processor; start: seconds in which YADE starts."""
 
     pace: float
     setup: float
@@ -105,7 +106,8 @@ def contact_updates(row):
 
 
 def typical_seconds(row):
-    """Seconds that the run of a row takes on a usual processor, by the row alone; infinity for a kind of a user's own."""
+    """Seconds that the run of a row takes on a usual processor, by the row alone; infinity for a kind of a user's
+    own."""
     return np.inf if row.estimate is None else setup_seconds(row) + stepping_seconds(row)
 
 
@@ -136,7 +138,8 @@ def _linear(numbers, grains):
 
 
 def makespan(running, waiting, at_once):
-    """Seconds until all is done: [(time left [s], threads)] of what runs, the same of what waits in its order, threads at once."""
+    """Seconds until all is done: [(time left [s], threads)] of what runs, the same of what waits in its order,
+    threads at once."""
     ends = [0.0] * at_once
     for left, threads in [*running, *waiting]:
         taken = [heapq.heappop(ends) for _ in range(min(threads, at_once))]

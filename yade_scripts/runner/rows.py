@@ -33,8 +33,8 @@ STOPPED = (128 + signal.SIGINT, 128 + signal.SIGTERM)  # exit statuses of a run 
 class StudyRow:
     """A row of a table.
 
-    kind and parameters are of the script in KINDS; with a script of a user's own kind is None, and the parameters are those of
-    every kind. Where they are wrong, parameters is None and error says why."""
+    kind and parameters are of the script in KINDS; with a script of a user's own kind is None, and the parameters are
+    those of every kind. Where they are wrong, parameters is None and error says why."""
 
     name: str
     cells: dict
@@ -107,7 +107,8 @@ def read(path):
 
 
 def write(path, rows):
-    """Write rows as a table whose runs resume in the same folders; [FILE:LINE] of each, by which its script finds it."""
+    """Write rows as a table whose runs resume in the same folders; [FILE:LINE] of each, by which its script finds
+    it."""
     own = lambda row: {"description": row.name, "out": row.out}
     table.write(path, [{**own(row), **row.cells, "resume": 1, "!THREADS": row.threads} for row in rows])
     return [f"{path}:{row.line}" for row in table.read(path)]
@@ -212,7 +213,8 @@ _OF_NO_CONSEQUENCE = [name for name, column in RunParameters.columns().items() i
 
 
 def _goes_on(row):
-    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, which is longer in the row."""
+    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, which is longer in
+    the row."""
     run = run_of(row.out) if row.kind and checkpoint.exists(row.out) else None
     if not run:
         return False
@@ -246,12 +248,14 @@ def undecided(rows, states):
 
 
 def summary(status):
-    """What a log ends with; nothing for a run that was stopped, which has not failed. status: of the run, as a shell has it."""
+    """What a log ends with; nothing for a run that was stopped, which has not failed. status: of the run, as a shell
+    has it."""
     return "" if status in STOPPED else f"\nJOB SUMMARY\nstatus  : {status << 8} ({'FAILED' if status else 'OK'})\n"
 
 
 def failure(log, folder):
-    """Why the run of a log and a run folder (paths) failed, in one line; None when it did not, was stopped, or is under way."""
+    """Why the run of a log and a run folder (paths) failed, in one line; None when it did not, was stopped, or is
+    under way."""
     try:
         with open(log, errors="replace") as file:
             text, _, end = file.read().partition("JOB SUMMARY")

@@ -1,16 +1,15 @@
 """A study as job arrays of Slurm: a task for each row that is left, or for several short ones.
 
-Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, of which task k of T has
-the k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T; k.out, what a task
-printed. The logs of the runs are where a local runner has them. A task is run by Slurm:
+Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, of which task
+k of T has the k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T;
+k.out, what a task printed. The logs of the runs are where a local runner has them. A task is run by Slurm:
 
     python3 slurm.py ROWS.table NUMBER TASKS      every row of that number, counted from 1, then each TASKS further on
 
-A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1, which Slurm
-sends before the time limit, has the run write its checkpoint; if a run has come further in this task, the task is put into the
-queue again. Exit status: 0 when all runs have ended, that of the last one that failed, 1 when one can't be run, 128 and more
-when it was stopped.
-"""
+A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1,
+which Slurm sends before the time limit, has the run write its checkpoint; if a run has come further in this task, the
+task is put into the queue again. Exit status: 0 when all runs have ended, that of the last one that failed, 1 when
+one can't be run, 128 and more when it was stopped."""
 
 import os
 import re
@@ -53,7 +52,8 @@ class SlurmError(Exception):
 
 
 def arrays(left):
-    """[([row, ...], number of tasks), ...] of rows that are left: those that take as many processors each make an array of at most LARGEST tasks."""
+    """[([row, ...], number of tasks), ...] of rows that are left: those that take as many processors each make an
+    array of at most LARGEST tasks."""
     found = []
     for (_, short), group in groupby(sorted(left, key=_uniform), key=_uniform):
         group = list(group)
@@ -70,8 +70,8 @@ def _uniform(row):
 def job_script(study_folder, folder, group, tasks, at_once=None):
     """Text of the script of an array of so many tasks, of rows that take as many processors each.
 
-    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm likes).
-    """
+    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm
+    likes)."""
     name = os.path.basename(study_folder.path)
     task = shlex.join([sys.executable, os.path.abspath(__file__), os.path.join(folder, ROWS)])
     return f"""#!/bin/sh
@@ -94,15 +94,16 @@ def require_usable(study_folder):
 
 
 def submit(study_folder, left, at_once=None, options=()):
-    """Submit rows; yields (Slurm's number of a job, its rows, how many tasks they are). options: of sbatch. Raises SlurmError and OSError."""
+    """Submit rows; yields (Slurm's number of a job, its rows, how many tasks they are). options: of sbatch. Raises
+    SlurmError and OSError."""
     for group, tasks in arrays(left):
         study_folder.remove_logs(group)
         yield _submit(study_folder, group, tasks, at_once, options), group, tasks
 
 
 def queued(study_folder, sure=False):
-    """{(name, run folder) of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as squeue has them. sure: raise
-    SlurmError where it has no answer."""
+    """{(name, run folder) of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as
+    squeue has them. sure: raise SlurmError where it has no answer."""
     found = {}
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
@@ -180,7 +181,8 @@ def main(arguments):
 
 
 class Task:
-    """Runs rows; notes the signals that this process has had, whether there is something .left, and whether it .came_further."""
+    """Runs rows; notes the signals that this process has had, whether there is something .left, and whether it
+    .came_further."""
 
     def __init__(self):
         self.limit_is_near = self.came_further = self.left = False
@@ -225,8 +227,8 @@ class Task:
         self._since = self._since or time.monotonic()
 
     def _pass_on(self):
-        """SIGTERM to the run, once: a second one would end it without its checkpoint. SIGUSR1 comes to this process alone,
-        others as a rule to all of the job: then the run handles them no more."""
+        """SIGTERM to the run, once: a second one would end it without its checkpoint. SIGUSR1 comes to this process
+        alone, others as a rule to all of the job: then the run handles them no more."""
         delay = 0.0 if self.limit_is_near else ALL_SIGNALLED
         if self._since is not None and time.monotonic() > self._since + delay:
             handles = _handles(self._worker.run, signal.SIGTERM)

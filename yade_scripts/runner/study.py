@@ -37,7 +37,8 @@ class Study:
         self._states = {}
 
     def states(self, changed=None):
-        """[State of each row]; looked at only for the rows that may have `changed` (names; None: any) since they were last."""
+        """[State of each row]; looked at only for the rows that may have `changed` (names; None: any) since they were
+        last."""
         for row in self.rows:
             before = self._states.get(row.name)
             if before is None or before.kind != DONE and (changed is None or row.name in changed):
@@ -45,7 +46,8 @@ class Study:
         return [self._states[row.name] for row in self.rows]
 
     def states_with_queue(self, changed=None, sure=False):
-        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]. sure: as slurm.queued() has it."""
+        """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]. sure: as
+        slurm.queued() has it."""
         states, queued = self.states(changed), slurm.queued(self.folder, sure)
         tasks = [None if row.error else queued.get((row.name, row.out)) for row in self.rows]
         for number, (state, task_of) in enumerate(zip(states, tasks)):

@@ -36,13 +36,15 @@ class RunsFailed(RuntimeError):
 def collide(folder="runs", jobs=None, **parameters):
     """Run collisions, and return analysis.table() of them: a row for every combination of the values.
 
-    parameters: as collide.py has them (below); a list, range or array stands for several values, None for the default.
-    folder: where the run folders go, named after their parameters, a duration that is given among them; those that are there are
-    resumed, or taken as they are when they have ended. jobs: threads at once (one for each core).
+    parameters: as collide.py has them (below); a list, range or array stands for several values, None for the
+    default. folder: where the run folders go, named after their parameters, a duration that is given among them;
+    those that are there are resumed, or taken as they are when they have ended. jobs: threads at once (one for each
+    core).
 
     The rows stand in a table in the folder, which study.py runs too: --status tells how far they are from any shell.
-    ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs; RunsFailed
-    when a run failed, which may have begun beside others (a file or filling that cannot be), or yade is missing. Ctrl-C stops the runs, each with a checkpoint.
+    ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs;
+    RunsFailed when a run failed, which may have begun beside others (a file or filling that cannot be), or yade is
+    missing. Ctrl-C stops the runs, each with a checkpoint.
 
         runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
     """

@@ -2,10 +2,9 @@
 
     yade -n -x worker.py NUMBER       the number of a file descriptor, one end of a multiprocessing.Pipe
 
-YADE and what runs need are loaded once. Each row is the run of a fork of this process: it has an interpreter, a scene and signals of its own
-as if YADE had been started for it, leaves nothing to the next one, and may crash. What is told of it: (its process id, None) when it can
-be stopped, and (its process id, its exit status).
-"""
+YADE and what runs need are loaded once. Each row is the run of a fork of this process: it has an interpreter, a scene
+and signals of its own as if YADE had been started for it, leaves nothing to the next one, and may crash. What is told
+of it: (its process id, None) when it can be stopped, and (its process id, its exit status)."""
 
 import ctypes
 import gc
@@ -88,7 +87,8 @@ def _status(code):
 
 
 def _use_threads(number):
-    """Have YADE's own loop use that many threads: a process that has used more than one can't be forked, so each run does it by itself."""
+    """Have YADE's own loop use that many threads: a process that has used more than one can't be forked, so each run
+    does it by itself."""
     from yade.wrapper import Omega
 
     ctypes.CDLL("libgomp.so.1").omp_set_num_threads(number)
