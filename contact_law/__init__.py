@@ -1,11 +1,11 @@
 """Loads the plugin into the running YADE.
 
-``import contact_law`` at the top of a script that ``yade`` runs makes JKRMat and the other classes known, as if they were YADE's own:
-in ``yade.wrapper``, in ``yade``, in the script's namespace, and as attributes of this package. With ``YADE_PREFIX`` set to the overlay
-in build/, YADE has loaded them already, and the import only finds them.
+``import contact_law`` at the top of a script that ``yade`` runs makes JKRMat and the other classes known, as if they
+were YADE's own: in ``yade.wrapper``, in ``yade``, in the script's namespace, and as attributes of this package. With
+``YADE_PREFIX`` set to the overlay in build/, YADE has loaded them already, and the import only finds them.
 
-``contact_law.commit`` is the git commit the plugin was built from, or "unknown"; ``contact_law.__all__`` names its classes;
-``contact_law.channels`` are the energy channels that it books, (name, "stored", "lost" or "work") each.
+``contact_law.commit`` is the git commit the plugin was built from, or "unknown"; ``contact_law.channels`` are the
+energy channels that it books, (name, "stored", "lost" or "work") each.
 """
 
 import ctypes
@@ -50,8 +50,8 @@ def _load(yade):
     if running != described:  # before anything of the library is touched
         other = " ".join(sorted(set(running) ^ set(described)))
         raise ImportError(
-            f"contact_law: refusing to load: this is YADE {yade.config.version}, not that for which it was compiled, {described[0]} "
-            f"(they differ in {other}); run make again with this one, or compile against its source: "
+            f"contact_law: refusing to load: this is YADE {yade.config.version}, not {described[0]}, for which it was "
+            f"compiled (they differ in {other}); run make again with this one, or compile against its source: "
             "make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version"
         )
     try:
@@ -68,8 +68,8 @@ def _load(yade):
 def _rebuild_dispatchers(yade):
     """Make the engines that choose functors by class anew.
 
-    Their tables are as long as the list of classes was when they were made; a new class would lie past the end, and YADE would abort.
-    The functors stay the same objects.
+    Their tables are as long as the list of classes was when they were made; a new class would lie past the end, and
+    YADE would abort. The functors stay the same objects.
     """
     dispatchers = ("InteractionLoop", "IPhysDispatcher", "LawDispatcher")
 

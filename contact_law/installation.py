@@ -10,7 +10,6 @@ PREFIX/lib/contact_law/installed.json lists all files, before the first is there
 Exit status: 0, or 2 with one line on stderr.
 """
 
-import glob
 import json
 import os
 import re
@@ -108,9 +107,8 @@ def uninstall(prefix):
             if _is_within(prefix, cache):
                 cache.unlink()
     (prefix / FOLDER / LIST).unlink()
-    for folder in sorted(
-        {parent for path in listed for parent in (path.parent / "__pycache__", *path.parents)}, reverse=True
-    ):
+    folders = {folder for path in listed for folder in (path.parent / "__pycache__", *path.parents)}
+    for folder in sorted(folders, reverse=True):
         if prefix in folder.parents and _is_within(prefix, folder) and folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()
     return [f"contact_law is removed from {prefix}"]
@@ -138,23 +136,17 @@ def _is_within(prefix, path):
 
 
 def module_folders(prefix):
-    """The folders in PREFIX in which a Python 3 of this system looks for modules (and reads .pth files)."""
+    """The folders in PREFIX in which a Python 3 of PATH or of Debian looks for modules (and reads .pth files)."""
+    folders = [*map(Path, os.environ.get("PATH", "").split(os.pathsep)), Path("/usr/bin")]
+    pythons = {os.path.realpath(file) for folder in folders for file in folder.glob("python3*")}
     ask = "import json, site; print(json.dumps([site.getusersitepackages(), *site.getsitepackages()]))"
     found = []
-    for python in _pythons():
+    for python in sorted(python for python in pythons if re.fullmatch(r"python3(\.\d+)?", os.path.basename(python))):
         answer = subprocess.run([python, "-c", ask], capture_output=True, text=True)
         if answer.returncode == 0:
             inside = [Path(path) for path in json.loads(answer.stdout) if prefix in Path(path).parents]
             found += [path for path in inside[:1] if path not in found]
     return found
-
-
-def _pythons():
-    """python3 of PATH and of Debian, and every python3.N beside them."""
-    folders = dict.fromkeys([*os.environ.get("PATH", "").split(os.pathsep), "/usr/bin"])
-    files = [file for folder in folders for file in glob.glob(f"{glob.escape(folder)}/python3*")]
-    files = {os.path.realpath(file) for file in files if re.fullmatch(r"python3(\.\d+)?", os.path.basename(file))}
-    return sorted(file for file in files if os.access(file, os.X_OK))
 
 
 def _plan():
@@ -176,16 +168,10 @@ def main(arguments):
     os.umask(0o022)  # all users may read an installation
     try:
         if not arguments[1] or not arguments[1].isprintable() or os.pathsep in arguments[1]:
-            raise CannotInstall(
-                f"PREFIX = {arguments[1]!r}: must be a folder, of printable characters and without '{os.pathsep}'"
-            )
+            raise CannotInstall(f"PREFIX = {arguments[1]!r}: must be a folder, printable and without '{os.pathsep}'")
         print(printable_lines("\n".join({"install": install, "uninstall": uninstall}[action](prefix))))
-    except CannotInstall as error:
+    except (CannotInstall, OSError) as error:
         print(printable(f"make {action}: {error}"), file=sys.stderr)
-        return 2
-    except OSError as error:
-        file = error.filename2 or error.filename or prefix  # of a copy the place, not the source
-        print(printable(f"make {action}: {file}: {error.strerror}"), file=sys.stderr)
         return 2
     return 0
 

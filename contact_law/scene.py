@@ -25,24 +25,24 @@ ROWS = {
 def snapshot():
     """Everything about the grains and their contacts at one moment.
 
-    Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from positions and
-    has moved the grains on by then; the arrays are brought to the moment of the forces, which is also that of O.energy.
+    Call it from a PyRunner that stands last among O.engines. NewtonIntegrator keeps velocities half a step apart from
+    positions and has moved the grains on by then; the arrays are of the moment of the forces, as O.energy is.
 
     Returns
     -------
     dict
-        In SI units. `time` [s]. Of the N grains, in the order of body ids: `ids` (N,), `position` (N, 3) (unwrapped in a periodic cell),
-        `velocity` (N, 3), `angular_velocity` (N, 3), `radius` (N,) (of sintered grains that before they shrank). Of the M contacts (a
-        periodic cell's are of the nearest images): `contact_pairs` (M, 2) (row numbers), `contact_normal_force` (M,) (elastic and
-        viscous, positive when repulsive), `contact_neck` (M,) (the neck's radius over that of the grains; 0: no bond),
-        `contact_bonded` (M,) bool. With planes (Walls), in the order of body ids: `plane_axis` (P,) (0, 1, 2), `plane_position` (P,)
-        along that axis, `plane_contacts` (K, 2) (row of the grain, row of the plane), `plane_contact_normal_force` (K,).
-        In a periodic scene: `cell_size` (3,).
+        In SI units. `time` [s]. Of the N grains, in the order of body ids: `ids` (N,), `position` (N, 3) (unwrapped in
+        a periodic cell), `velocity` (N, 3), `angular_velocity` (N, 3), `radius` (N,) (before sintering). Of the M
+        contacts: `contact_pairs` (M, 2) (row numbers; a periodic cell's are of the nearest images),
+        `contact_normal_force` (M,) (elastic and viscous, positive when repulsive), `contact_neck` (M,) (of bonds, the
+        neck's radius over that of the grains; others 0), `contact_bonded` (M,) bool. With planes (Walls), in the order
+        of body ids: `plane_axis` (P,) (0, 1, 2), `plane_position` (P,) along that axis, `plane_contacts` (K, 2) (row of
+        the grain, row of the plane), `plane_contact_normal_force` (K,). In a periodic scene: `cell_size` (3,).
 
     Raises
     ------
     RuntimeError
-        While O.run() is under way (but for PyRunners), and when JKRWadaEngine's grains are not the scene's bodies any more.
+        While O.run() is under way (but for PyRunners), and when JKRWadaEngine's grains are not the scene's bodies.
     """
     from yade.wrapper import JKRWadaSnapshot
 
@@ -58,9 +58,9 @@ def snapshot():
 def sinter(neck):
     """Make every contact of the running scene a sintered bond (Sirono & Ueno 2017), whoever moves the grains.
 
-    Bonds are without strain where the grains are now; with the functors from the next O.step on. Existing bonds keep their own neck.
-    All grains shrink by the volume of two of the largest necks, as ordinary contacts see them. What the contacts held is booked as
-    disconnection (MODEL.md, "Sintering a running scene").
+    Bonds are without strain where the grains are now; with the functors from the next O.step on. Existing bonds keep
+    their own neck. All grains shrink by the volume of two of the largest necks, as ordinary contacts have them. What
+    the contacts held is booked as disconnection (MODEL.md, "Sintering a running scene").
 
     Parameters
     ----------
@@ -70,8 +70,8 @@ def sinter(neck):
     Raises
     ------
     ValueError, RuntimeError
-        For a neck out of range, a time step too long for the bonds, a scene without the contact law, and while O.run() is under way
-        (but for PyRunners).
+        For a neck out of range, a time step too long for the bonds, a scene without the contact law, and while
+        O.run() is under way (but for PyRunners).
     """
     from yade.wrapper import Ip2_JKRMat_JKRMat_JKRWadaPhys, JKRWadaEngine, Omega
 
@@ -91,10 +91,11 @@ def sinter(neck):
 
 # Of yade.utils: they read O.interactions or O.forces, which the fused engine leaves empty.
 OF_CONTACTS = """
-    avgNumInteractions bodyNumInteractionsHistogram bodyStressTensors fabricTensor forcesOnCoordPlane forcesOnPlane getBodyIdsContacts
-    getStress getStressAndTangent getStressProfile getStressProfile_contact interactionAnglesHistogram intrsOfEachBody maxOverlapRatio
-    normalShearStressTensors numIntrsOfEachBody plotDirections plotNumInteractionsHistogram stressTensorOfPeriodicCell sumForces
-    sumTorques totalForceInVolume unbalancedForce
+    avgNumInteractions bodyNumInteractionsHistogram bodyStressTensors fabricTensor forcesOnCoordPlane forcesOnPlane
+    getBodyIdsContacts getStress getStressAndTangent getStressProfile getStressProfile_contact
+    interactionAnglesHistogram intrsOfEachBody maxOverlapRatio normalShearStressTensors numIntrsOfEachBody
+    plotDirections plotNumInteractionsHistogram stressTensorOfPeriodicCell sumForces sumTorques totalForceInVolume
+    unbalancedForce
 """.split()
 
 

@@ -1,5 +1,6 @@
-"""The bond of two sintered grains (Sirono & Ueno 2017, S17, section 3). neck: beta, its radius over R_g, theirs; of
-unlike grains R_g = 2 r1 r2/(r1 + r2), and half of the elastic disk is of either material."""
+"""The bond of two sintered grains (Sirono & Ueno 2017, S17, section 3). neck: beta, its radius over theirs, R_g.
+
+Of unlike grains R_g = 2 r1 r2/(r1 + r2), and half of the elastic disk is of either material."""
 
 from dataclasses import dataclass
 from math import asin, pi, sqrt
@@ -23,8 +24,7 @@ class BondConstants:
 def bond_constants(
     material: Material, radius: float, neck: float, material2: Material | None = None, radius2: float | None = None
 ) -> BondConstants:
-    """BondConstants of two grains of radii [m] before they sintered; the second equals the first where it is left
-    out."""
+    """BondConstants of two grains of radii [m] before they sintered; the second equals the first if left out."""
     both = (material, material2 or material)
     reduced = 1.0 / (1.0 / radius + 1.0 / (radius2 or radius))
     young, shear = (2.0 / sum(1.0 / getattr(m, name) for m in both) for name in ("young", "shear"))
@@ -63,8 +63,7 @@ def stretching_period(pair):
 
 
 def shrunk_radius(neck):
-    """R'/R_g of a grain that two necks have taken their volume from, that between fillet and spheres (S17 section
-    3.3, Fig. 4).
+    """R'/R_g of a grain that has given two necks their volume, that between fillet and spheres (S17 3.3, Fig. 4).
 
     >>> round(shrunk_radius(0.7), 4)
     0.9158
