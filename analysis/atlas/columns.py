@@ -8,13 +8,13 @@ from scipy.optimize import brentq
 from ..measures.compression import first_compression
 from ..measures.decided import Pieces, is_recent
 from ..measures.fragments import fragment_labels, fragment_sizes
-from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
 from ..measures.motion import pieces_that_can_meet
-from ..measures.of_run import met, time_of_touch
 from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
 from ..measures.structure import filling_factor, gyration_radius, mean_coordination
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
+from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
+from ..runs.measured import met, time_of_touch
 from ..runs.table import Column, read_table
 from ..theory import Material
 from .rules import KINDS, outcome

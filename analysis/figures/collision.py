@@ -4,9 +4,9 @@ import numpy as np
 from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 
-from ..measures.of_run import maximum_of_run
 from ..runs.files import RunFolderError
 from ..runs.format import HISTORY_FILE
+from ..runs.measured import maximum_of_run
 from .grain_colours import AGGREGATE_COLOURS
 from .sphere_raster import paint_spheres
 from .style import NANO, new_figure, run_title, styled

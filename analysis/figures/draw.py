@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from ..measures.of_run import are_equal
 from ..progress import progress
 from ..runs.files import make_folder, replacing
 from ..runs.format import COLLISION, COMPRESSION
+from ..runs.measured import are_equal
 from .collision import forces_figure, grains_figure, motion_figure
 from .energy import compression_figure, energy_figure
 

@@ -10,8 +10,6 @@ averages. The virial's own series is of the moment of each sample, which misses 
 
 import numpy as np
 
-from .ledger import work_on_boundaries
-
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
 
 
@@ -64,6 +62,11 @@ def kinetic_pressure(mass, position, velocity, cell_size, rate):
 def filling_factor(radius, cell_size):
     """Volume of the spheres, radius (N,), over that of the cell (K13 eq 22; overlaps counted twice)."""
     return float(4.0 / 3.0 * np.pi * np.sum(np.asarray(radius, dtype=float) ** 3) / np.prod(cell_size))
+
+
+def work_on_boundaries(history):
+    """Work (T,) [J] of the grains on what compresses them: the boundaries of a periodic cell, or plates."""
+    return history["boundaryWork"] + history["constraintWork"]
 
 
 def compressing(history):

@@ -8,9 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import pandas
 
-from ..measures.fragments import STRUCTURE, fragment_labels, heaviest_fragment, structure_of
-from ..measures.ledger import closure, fractions_at, initial_kinetic_energy, largest_work, work_closure
-from ..measures.of_run import are_equal, maximum_of_run, met, outcome_of_run
+from ..measures.fragments import fragment_labels, heaviest_fragment
 from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
 from ..measures.structure import mean_coordination
 from ..progress import progress
@@ -18,6 +16,9 @@ from ..runs.collect import run_folders
 from ..runs.files import RunFolderError
 from ..runs.folder import RunFolder, open_run
 from ..runs.format import BONDS, CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
+from ..runs.ledger import closure, fractions_at, initial_kinetic_energy, largest_work, work_closure
+from ..runs.measured import are_equal, maximum_of_run, met, outcome_of_run
+from ..runs.pieces import STRUCTURE, structure_of
 from ..runs.table import FOLDER, RUN, Column, described, make_table
 
 at_end = "{}_at_end".format

@@ -2,12 +2,12 @@
 
 import textwrap
 
-from ..measures.ledger import largest_work
-from ..measures.of_run import are_equal, met
 from ..measures.outcome import BOUNCING
 from ..measures.periodic_cell import AVERAGED, pressure_at_end
 from ..runs.folder import WIDTH, settings
 from ..runs.format import CHANNELS, COLLISION, COMPRESSION, LABELS
+from ..runs.ledger import largest_work
+from ..runs.measured import are_equal, met
 from ..runs.table import FOLDER, RUN
 from .rows import varied
 

@@ -47,7 +47,7 @@ class State(SimpleNamespace):
 
     `time` is a float [s]; an optional quantity that the run does not have is None. The arrays are read-only."""
 
-    def __init__(self, time, **arrays):
+    def __init__(self, time=0.0, **arrays):  # without arguments when it is unpickled
         optional = {quantity.name: None for quantity in STATE if quantity.optional}
         super().__init__(**{**optional, "time": float(np.reshape(time, ())), **arrays})
 
@@ -57,9 +57,8 @@ class State(SimpleNamespace):
         return head + textwrap.fill(names, WIDTH, initial_indent="  ", subsequent_indent="  ")
 
     def fragments(self):
-        """DataFrame with a row for each piece (grains joined by contacts), the largest first:
-        measures.fragments.fragments."""
-        from ..measures.fragments import fragments
+        """DataFrame with a row for each piece (grains joined by contacts), the largest first (runs.pieces)."""
+        from .pieces import fragments  # loads pandas
 
         return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size)
 

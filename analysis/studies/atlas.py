@@ -24,9 +24,9 @@ from ..atlas.variables import (
     variables,
 )
 from ..figures.style import letter, panels, styled
-from ..measures.of_run import UNLIKE
 from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..runs.collect import Scene
+from ..runs.measured import UNLIKE
 from ..theory import ICE
 from .columns import NotMeasured, group
 from .comparison import Row

@@ -8,11 +8,11 @@ from typing import Callable
 import numpy as np
 
 from ..measures.compression import first_compression, largest_return_speed
-from ..measures.ledger import closure, fractions_at, initial_kinetic_energy
-from ..measures.of_run import derived_constants, met, outcome_of_run
 from ..measures.structure import mean_coordination
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
+from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
+from ..runs.measured import derived_constants, met, outcome_of_run
 from ..runs.table import Column
 from ..theory import GRAIN_RADIUS as RADII
 from ..theory import MATERIALS

@@ -7,11 +7,11 @@ import pandas
 
 from ..figures.style import PAPER
 from ..measures import periodic_cell as cells
-from ..measures.ledger import work_closure
 from ..measures.network import spanned_axes
 from ..measures.structure import fractal_dimension, grains_within
 from ..runs.collect import Scene
 from ..runs.format import COMPRESSION, LOST_CHANNELS
+from ..runs.ledger import work_closure
 from ..theory import compression as theory
 from ..theory.aggregates import bcca_coordination
 from .columns import GRAINS, MATERIAL, OF_GRAINS, Column, NotMeasured, constant, grains_text, group, parameter

@@ -8,13 +8,13 @@ from scipy.optimize import brentq
 
 from ..figures.style import PAPER
 from ..measures.fragments import fragment_labels, fragment_sizes
-from ..measures.ledger import fractions_at
 from ..measures.network import loops
-from ..measures.of_run import derived_constants
 from ..measures.outcome import BOUNCING, STICKING
 from ..measures.structure import gyration_radius
 from ..runs.collect import Scene
 from ..runs.format import BROKEN_BONDS, CHANNELS
+from ..runs.ledger import fractions_at
+from ..runs.measured import derived_constants
 from ..theory.bonds import breaking_energy, stretching_period
 from ..theory.pair_constants import ICE, pair_constants
 from . import columns

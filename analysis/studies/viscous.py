@@ -13,10 +13,10 @@ from ..measures.fragments import (
     fragment_sizes,
     growth_efficiency,
 )
-from ..measures.ledger import WAYS, initial_kinetic_energy
 from ..measures.motion import NEAR, pair_velocities, root_mean_square
-from ..measures.of_run import derived_constants
 from ..runs.collect import Scene
+from ..runs.ledger import WAYS, initial_kinetic_energy
+from ..runs.measured import derived_constants
 from ..runs.table import Column
 from ..theory import Material, pair_constants, sticking_velocity
 from .columns import CLOSURE, END, GRAIN_RADIUS, MET, SEED, NotMeasured, group, one, parameter, require_papers_grains

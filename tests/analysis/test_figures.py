@@ -12,9 +12,9 @@ from analysis.figures.energy import energy_figure
 from analysis.figures.sphere_raster import paint_spheres
 from analysis.figures.style import new_figure, save_small
 from analysis.measures.compression import maximum_compression
-from analysis.measures.ledger import fractions
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLOURS
+from analysis.runs.ledger import fractions
 
 
 @pytest.fixture(scope="module")

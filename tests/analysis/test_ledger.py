@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from analysis.measures.ledger import closure, closure_history, fractions, fractions_at, total_energy
 from analysis.runs.format import CHANNELS
+from analysis.runs.ledger import closure, closure_history, fractions, fractions_at, total_energy
 
 
 def _history(**changed):

@@ -13,8 +13,8 @@ sys.path.insert(0, str(HERE.parent))
 from yade_server import YadeServer
 
 from analysis import open_run
-from analysis.measures import ledger
 from analysis.measures.compression import maximum_compression
+from analysis.runs import ledger
 
 GRAIN_RADIUS = 1e-7  # m
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted

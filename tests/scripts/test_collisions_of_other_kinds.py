@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from running import completed, read_arrays, read_json
 
-from analysis.measures.ledger import closure_history
-from analysis.measures.of_run import outcome_of_run
 from analysis.runs.folder import open_run
+from analysis.runs.ledger import closure_history
+from analysis.runs.measured import outcome_of_run
 from yade_scripts.experiments.collision import KIND
 
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")

@@ -10,11 +10,11 @@ import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
-from analysis.measures.of_run import outcome_of_run
 from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.files import SUM
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
+from analysis.runs.measured import outcome_of_run
 from yade_scripts import packings, stability
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK

@@ -5,7 +5,8 @@ A history is a mapping of arrays (T,) by name: `time` [s] and every channel of r
 
 import numpy as np
 
-from ..runs.format import CHANNELS
+from ..measures.periodic_cell import work_on_boundaries
+from .format import CHANNELS
 
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 WAYS = {
@@ -49,11 +50,6 @@ def closure(history):
     """
     error = closure_history(history)
     return None if error is None else float(np.abs(error).max())
-
-
-def work_on_boundaries(history):
-    """Work (T,) [J] of the grains on what compresses them: the boundaries of a periodic cell, or plates."""
-    return history["boundaryWork"] + history["constraintWork"]
 
 
 def largest_work(history):

@@ -1,14 +1,14 @@
-"""Measures of a run folder: its arrays given to the functions of this package."""
+"""What is measured of a run folder: its arrays given to the functions of analysis.measures."""
 
 import numpy as np
 
-from ..runs.files import RunFolderError
-from ..runs.format import STATES_FOLDER
-from .compression import first_compression
-from .decided import CONSTANTS, is_recent, why_undecided
-from .fragments import belongs_to_an_aggregate
-from .outcome import collision_outcome
-from .plate import has_plate, plate_outcome, why_undecided_on_plate
+from ..measures.compression import first_compression
+from ..measures.decided import CONSTANTS, is_recent, why_undecided
+from ..measures.fragments import belongs_to_an_aggregate
+from ..measures.outcome import collision_outcome
+from ..measures.plate import has_plate, plate_outcome, why_undecided_on_plate
+from .files import RunFolderError
+from .format import STATES_FOLDER
 
 UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the plane x = 0 is not where they meet
 
