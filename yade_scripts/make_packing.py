@@ -10,7 +10,7 @@ packing doesn't depend on (density, criticalRolling, viscoelasticTime) are refus
 
 Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or
 text of DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of
-`material`; packings and states of collisions, RUN/states/NNNNNN.npz, say their own.
+`material`; packings and states of collisions, RUN/states/NNNNNN.npz, name their own.
 """
 
 import os

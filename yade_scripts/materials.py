@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
+from analysis import theory
 from analysis.theory.pair_constants import GRAIN_RADII
 from yade_scripts.parameters import (
     POSITIVE,
@@ -29,17 +30,12 @@ class Material:
     criticalRolling: float  # m
 
 
+# of the papers, which analysis.theory names
 MATERIALS = {
-    # Arakawa et al. 2022, Table 1 (and Kataoka et al. 2013, Table 1)
-    "ice": Material(
-        grainRadius=0.1e-6, young=7e9, poisson=0.25, density=1000.0, surfaceEnergy=0.1, criticalRolling=0.8e-9
-    ),
-    # Kataoka et al. 2013, Table 1
-    "silicate": Material(
-        grainRadius=0.6e-6, young=54e9, poisson=0.17, density=2650.0, surfaceEnergy=0.02, criticalRolling=2e-9
-    ),
+    name: Material(theory.GRAIN_RADIUS[name], of.young, of.poisson, of.density, of.surface_energy, of.critical_rolling)
+    for name, of in theory.MATERIALS.items()
 }
-
+_pair_constants, _bond_constants = lru_cache(theory.pair_constants), lru_cache(theory.bond_constants)
 
 GRAINS = Usual(*GRAIN_RADII, "smallest soot monomers to chondrules")
 YOUNG = Usual(1e6, 1.3e12, "rubber to diamond")
@@ -109,29 +105,13 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]
-    radii = radii or (grains.grainRadius, grains.grainRadius)
-    properties.append(getattr(grains, "viscoelasticTime", 0.0))
-    found = dict(_pair_constants(*properties, *radii, linearDamping, getattr(grains, "slidingStiffnessFactor", 1.0)))
+    material = theory.Material(*properties, getattr(grains, "viscoelasticTime", 0.0))
+    first, second = radii or (grains.grainRadius, grains.grainRadius)
+    sliding = getattr(grains, "slidingStiffnessFactor", 1.0)
+    found = _by_plugins_names(_pair_constants(material, first, material, second, linearDamping, sliding))
     if neck:
-        found["bond"] = dict(_bond_constants(*properties, grains.grainRadius, neck))
+        found["bond"] = _by_plugins_names(_bond_constants(material, grains.grainRadius, neck))
     return found
-
-
-@lru_cache
-def _pair_constants(*properties_radii_and_law):
-    from analysis import theory  # takes a moment, and runs within YADE do without
-
-    *properties, radius1, radius2, damping, sliding = properties_radii_and_law
-    material = theory.Material(*properties)
-    return _by_plugins_names(theory.pair_constants(material, radius1, material, radius2, damping, sliding))
-
-
-@lru_cache
-def _bond_constants(*properties_radius_and_neck):
-    from analysis import theory
-
-    *properties, radius, neck = properties_radius_and_neck
-    return _by_plugins_names(theory.bond_constants(theory.Material(*properties), radius, neck))
 
 
 def _by_plugins_names(constants):

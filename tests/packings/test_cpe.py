@@ -103,7 +103,7 @@ def test_packings_apart_and_overlapping():
 def test_filling_above_what_the_lattice_or_this_sphere_holds():
     with refused(packings.PackingError, "filling = 0.76: ", "at most 0.7519 (A24"):
         ice(filling=0.76)
-    with refused(packings.PackingError, "asks for 48 grains, but the lattice has"):
+    with refused(packings.PackingError, "takes 48 grains, but the lattice has"):
         [ice(filling=0.75, relative_radius=4, seed=seed) for seed in range(20)]  # some are too small for it
 
 

@@ -165,7 +165,7 @@ WRONG = [
     ("2\nno grains\nC 0 0 0\n", UM, "1 rows of numbers; must be 2"),
     (DUMP.format(n="all"), UM, "line 4: 'all' grains"),
     (DUMP.format(n=1) + "ITEM: ATOMS id xs ys zs\n1 0 0 0\n", UM, "no x y z among its columns id, xs, ys, zs"),
-    (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9, as it says"),
+    (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9"),
     ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
     ("# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY", UM, "no points in it that VTK can read"),
     (BIPYRAMID, dict(unit="radius"), "the contacts cannot be brought to rest together: grains 0 and 1"),

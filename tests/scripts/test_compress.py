@@ -98,21 +98,6 @@ def test_it_ends_at_a_pressure(tmp_path):
     assert done.returncode == 0 and "the cell is not stretched" in said and about["outcome"] == "completed"
 
 
-ENDS = {
-    "finalFilling=0.02": "finalFilling, at a filling of 0.02",
-    "finalFilling=0.02 stretch=x": "stretchFilling, at a filling of 0.0060",
-    "finalFilling=0.02 duration=1e-8": "duration, at a filling of 0.00842",
-    "finalFilling=0.3 boundary=walls duration=1e-8": "duration, at a filling of 0.1",
-}
-
-
-@pytest.mark.parametrize("given", ENDS)
-def test_a_run_says_what_ended_it(tmp_path, given):
-    done = compress(tmp_path, *SMALL, "out=run", *given.split())
-    assert f"\nended by {ENDS[given]}" in done.stdout, done.stderr
-    assert read_json(tmp_path, "run", "run.json")["endedBy"].startswith(ENDS[given])
-
-
 def test_what_swings_from_the_start_is_no_pressure(tmp_path):
     """The virial of the first 1000 t0 is 20 Pa, of an aggregate that touches nothing."""
     _, history = completed(tmp_path, *SMALL, "finalPressure=1")
@@ -182,11 +167,6 @@ def test_wrong_parameters_give_one_line(tmp_path, arguments, message):
     others = [text for text in SMALL if text.split("=")[0] != arguments.split("=")[0]]
     assert refusal(compress(tmp_path, *others, *arguments.split())).startswith(f"compress.py: {message}")
     assert os.listdir(tmp_path) == []
-
-
-def test_the_filling_at_the_start_may_be_given(tmp_path):
-    about, _ = completed(tmp_path, *SMALL, "initialFilling=0.01", "finalFilling=0.011")
-    assert about["parameters"]["initialFilling"] == pytest.approx(0.01)
 
 
 def test_the_estimate_is_near_what_a_run_takes(run):

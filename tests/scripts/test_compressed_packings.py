@@ -1,4 +1,4 @@
-"""Spheres cut out of compressed cells, at the filling that is asked for."""
+"""Spheres cut out of compressed cells, at the filling of the table."""
 
 import os
 
@@ -39,7 +39,7 @@ def made_cell(tmp_path, monkeypatch):
     return open(os.path.join(compressed.cell(0.4, 3), "states", "000001.npz"), "w").close()
 
 
-def test_both_spheres_have_the_filling_that_was_asked_for(made_cell):
+def test_both_spheres_have_the_filling_of_the_table(made_cell):
     compressed.cut_pair(0.4, 3)
     pair = [packings.load(compressed.packing_file(0.4, 3, index)) for index in (0, 1)]
     for packing in pair:

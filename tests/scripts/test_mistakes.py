@@ -23,7 +23,7 @@ TABLES = {
     "mine.npz": "hello\n",
     "runs.csv": "a,b\n",
 }
-# what is typed: words of the line that says what is wrong
+# what is typed: words of the line on stderr
 MISTAKES = {
     "analysis summary empty": "empty: no run folder (run.json) there",
     "analysis summary nowhere": "nowhere: no such folder",

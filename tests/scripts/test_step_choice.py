@@ -39,14 +39,6 @@ def expected_error(parameters, constants):
     return sum(of_kind(parameters, constants).values()) * parameters.stepFraction**2
 
 
-def test_auto_and_its_tolerance():
-    found = parse({"stepFraction": "'auto'", "velocity": "2"})
-    assert (found.stepFraction, found.tolerance) == ("auto", 1e-4)
-    assert found.out == "runs/collide-ice-f0.4-R20-v2-s1-stepFractionauto"
-    assert parse({**AUTO, "tolerance": "10**-5"}).tolerance == 1e-5
-    assert parse({}).tolerance is None
-
-
 SCENES = [
     "",
     "velocity=30",
@@ -81,21 +73,6 @@ def test_the_limits_of_stability_and_of_the_tolerance():
         assert found.stepFraction == limit < 0.4
     with refused(ParameterError, "tolerance = 1e-07: would take a step of 0.00", " in this scene, for 0.01 t0"):
         chosen(tolerance=1e-7, velocity=0.5)
-
-
-@pytest.mark.parametrize(
-    "part, scene",
-    [
-        ("set by forming and breaking contacts", {"velocity": 1}),
-        ("set by the speed of the impact", {"velocity": 30}),
-        ("set by the limit of stability", {"viscoelasticTime": 6e-12, "tolerance": 1e-3}),
-        ("set by breaking bonds", {"neck": 0.5, "velocity": 30, "radius": 8}),
-    ],
-)
-def test_the_largest_cause_is_named(part, scene):
-    found, constants, _ = chosen(**scene)
-    text = collision_step.reason(found, constants)
-    assert text.startswith(f"{found.stepFraction:.3g} t0 for a ledger error of at most ") and part in text
 
 
 @pytest.mark.in_yade

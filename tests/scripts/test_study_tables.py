@@ -144,18 +144,6 @@ def test_sintered_holds_the_papers_runs_and_files_that_are_grown(runs):
         assert wanted == {grown.file(0) for grown in sintered.grown(size)}
 
 
-def test_sintered_beyond_stands_beside_the_desks_runs(runs):
-    """Every row of beyond differs from a row of desk with the same seed in one thing alone."""
-    beyond, desk = runs("sintered-beyond"), runs("sintered-desk")
-    assert len(beyond) == 420 and not set(beyond) & set(desk)
-    for name, p in beyond.items():
-        changed = {"-space": not p.planar, "-held": p.limit == "held", "-x30": p.criticalRolling == 30e-10}
-        *more, other = (ending for ending, is_so in changed.items() if is_so)
-        assert name.replace(other, "") in desk and more in ([], ["-space"])
-        if p.packing == "file":  # aggregates grow by the law that they collide with
-            assert ("space" in p.file, "held" in p.file) == (not p.planar, p.limit == "held")
-
-
 def test_rows_of_the_atlas_are_the_same_in_every_size():
     """A tenth is held out, and not chosen, and a tenth of silicate, of every structure a quarter; sizes, mass ratios
     and steps are within their limits."""

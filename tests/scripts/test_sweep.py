@@ -39,14 +39,6 @@ def test_the_question_of_the_readme(tmp_path):
     assert len(ended) == 4 and all(file.stat().st_mtime_ns == time for file, time in ended.items())
 
 
-def test_aggregates_that_pass_each_other_are_a_row_of_a_sweep(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for _ in range(2):  # the second time they are there
-        found = from_python(impact=[0.3, 1], packing="bpca", grains=16, velocity=30, stepFraction=0.2)
-        assert found.outcome[1] == "never met" != found.outcome[0] and found.ended.all()
-    assert len(list(tmp_path.glob("runs/collide-*/ended"))) == 2
-
-
 @pytest.mark.parametrize("name, value", [("velocty", 3), ("velocity", -1), ("radius", "1e-7m")])
 def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monkeypatch, name, value):
     monkeypatch.chdir(tmp_path)

@@ -124,7 +124,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
                     "start "
                     "at rest"
                 )
-            if found.packing != "file":  # a file may say its material itself
+            if found.packing != "file":  # a file may name its material
                 collision_step.require_sintered(found.neck, pair_constants(found))
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
@@ -373,7 +373,7 @@ def expected(parameters, run):
 
 
 def _grain_numbers(parameters):
-    """Grains of the aggregates; of files that can't be read, which the run will say, as if they held one each."""
+    """Grains of the aggregates; of files that can't be read as if they held one each."""
     of = (parameters,) if parameters.target == WALL else (parameters, parameters.of_projectile())
     if parameters.packing != "file":
         return tuple(p.grains for p in of)

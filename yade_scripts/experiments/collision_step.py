@@ -84,7 +84,7 @@ def expected(parameters, constants):
     """stepFraction as a run will have it."""
     try:
         return _step(parameters, constants, step_limit(parameters, constants))
-    except ParameterError:  # the run will say what is wrong
+    except ParameterError:  # the run ends with this line
         return step_choice.SHORTEST
 
 

@@ -364,7 +364,7 @@ def estimate(parameters):
     constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
     try:
         ends = _with_final_filling(parameters, constants)
-    except ParameterError:  # the run will say what is wrong
+    except ParameterError:  # the run ends with this line
         ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
     try:
         step = _step(ends, constants, stability.step_limit(constants, ends.finalFilling))
@@ -390,7 +390,7 @@ def expected(parameters, run):
     found = {"initialFilling": held.get("initialFilling")} if parameters.initialFilling is None else {}
     try:
         ends = _with_final_filling(parameters, pair_constants(parameters))
-    except ParameterError:  # the run will say what is wrong
+    except ParameterError:  # the run ends with this line
         return found
     found["finalFilling"] = ends.finalFilling
     if parameters.duration is None and None not in (held.get("initialFilling"), derived.get("timeUnit")):

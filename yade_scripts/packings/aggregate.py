@@ -172,7 +172,7 @@ def make(parameters, overlap, index):
     Returns
     -------
     Packing
-        Its parameters say of which material it is, so that a run of other grains does not start with contacts out of
+        Its parameters name the material, so that a run of other grains does not start with contacts out of
         rest, and how unlike its grains are.
 
     Raises

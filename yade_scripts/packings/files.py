@@ -113,7 +113,7 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
     Raises
     ------
     PackingError
-        When it is no packing, is made of other grains (as far as it says), or grains overlap too deeply.
+        When it is no packing, is made of other grains, or grains overlap too deeply.
     """
     packing = load(path)
     if packing.grains < 2:
@@ -159,7 +159,7 @@ def _require_material(path, packing, grain_radius, grains):
 
 
 def _require_rest(path, packing, grain_radius, overlap):
-    """Contacts must be at rest by what the file says of them, and none far too deep. A cpe packing may have been made
+    """Contacts must be at rest by the file's own overlap, and none far too deep. A cpe packing may have been made
     loose on purpose (initialOverlap)."""
     stored = None if packing.parameters.get("packing") == "cpe" else _number(path, packing.parameters, "overlap")
     if stored is not None and abs(stored - overlap) > AT_REST * overlap:

@@ -1,4 +1,4 @@
-"""Aggregates of other programs: which grains are meant to touch, and their contacts brought to rest.
+"""Aggregates of other programs: which grains touch, and their contacts brought to rest.
 
 Programs write grains that touch 2 r apart, or at the overlap of their own contact law, with the digits that they happen
 to write; in a run a gap of 1e-16 m is no contact, and a contact out of rest pulls. Grains are taken to touch where the
@@ -43,7 +43,7 @@ class ImportParameters(GrainParameters):
     unit: str | None = parameter(
         None,
         one_of([*IN_A_METRE, OF_RADIUS]),
-        f"of the lengths in the file (m, unless the file says it); {OF_RADIUS}: they are in units of grainRadius",
+        f"of the lengths in the file (m, unless the file names it); {OF_RADIUS}: they are in units of grainRadius",
     )
     radius: float | None = parameter(None, POSITIVE, "of the grains, where the file has no radii", "unit")
     names: str | None = parameter(
@@ -82,7 +82,7 @@ def imported(path, texts):
     ----------
     path : str
     texts : dict
-        {name: text} of ImportParameters. Grains are of the material that the file says, unless one is given.
+        {name: text} of ImportParameters. Grains are of the file's material, unless one is given.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def imported(path, texts):
     constants = materials.pair_constants(parameters)
     materials.require_small_contacts(constants)
     overlap = constants["equilibriumOverlap"]
-    pairs = _meant_contacts(path, scaled, overlap)
+    pairs = _contacts_in_file(path, scaled, overlap)
     rest = at_rest(scaled.position, scaled.radius, pairs, scaled.grain_radius, overlap)
     if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
         first, second = rest.pairs[rest.worst]
@@ -148,7 +148,7 @@ def grains_of(packing, material=None):
 
 
 def _material_of(path):
-    """{name: value} of OF_CONTACTS that a state of a run, or a packing of make_packing.py, says; {} of other files."""
+    """{name: value} of OF_CONTACTS in a state of a run or a packing of make_packing.py; {} of other files."""
     if is_packing(path):
         made_of = load(path).parameters
     elif not holds(path, "contact_pairs"):
@@ -201,8 +201,8 @@ def _require_plausible(path, radius, unit):
     )
 
 
-def _meant_contacts(path, scaled, overlap):
-    """Pairs (M, 2) of grains that are meant to touch, none of them deeper than can be meant."""
+def _contacts_in_file(path, scaled, overlap):
+    """Pairs (M, 2) of grains that touch by the digits of the file; PackingError where they overlap too deeply."""
     position, radius = scaled.position, scaled.radius
     grains, nearest = np.arange(len(radius)), cKDTree(position).query(position, 2)[1]
     other = np.where(nearest[:, 0] == grains, nearest[:, 1], nearest[:, 0])  # one in the same place may come first

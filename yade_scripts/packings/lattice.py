@@ -67,7 +67,7 @@ def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=
     if wanted > len(sites):
         at_most = len(sites) * (grain_radius / aggregate_radius) ** (2 if planar else 3)
         raise PackingError(
-            f"filling = {filling:g}: asks for {wanted} grains, but the lattice has "
+            f"filling = {filling:g}: takes {wanted} grains, but the lattice has "
             f"{len(sites)} in this sphere (seed {seed}, aggregate {index}); must be at most {at_most:.4f} here, "
             f"{limit:.4f} in large spheres (A24 eq 40)"
         )

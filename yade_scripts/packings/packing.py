@@ -10,7 +10,7 @@ from analysis.measures.fragments import belongs_to_an_aggregate, fragment_labels
 from analysis.measures.structure import fractal_dimension, grains_within, mean_coordination
 from yade_scripts.parameters.errors import InputError
 
-NEAREST = 3.0  # grain radii: nearer than that the number of grains says how they touch
+NEAREST = 3.0  # grain radii: nearer than that numbers of grains depend on contacts
 ORIGINS = 2000  # grains from which the fractal dimension is taken
 AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
 

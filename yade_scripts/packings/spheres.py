@@ -37,7 +37,7 @@ class Spheres:
     about : str
         The format and the columns that were taken, in a few words.
     unit : str or None
-        The file's own, where it says one.
+        The file's own, if it names one.
     """
 
     position: np.ndarray
@@ -204,7 +204,7 @@ def _of_table(path, most, names):
     if max(found.values()) >= frame.shape[1]:
         raise PackingError(f"{path}: {frame.shape[1]} columns; must have those of {', '.join(names)}")
     if table.rows is not None and len(frame) < table.rows:
-        raise PackingError(f"{path}: {len(frame)} rows of numbers; must be {table.rows}, as it says")
+        raise PackingError(f"{path}: {len(frame)} rows of numbers; must be {table.rows}, by its header")
     numbers = {role: pandas.to_numeric(frame[column], errors="coerce").to_numpy() for role, column in found.items()}
     return _spheres(path, table.kind, numbers, table.unit)
 

@@ -54,7 +54,7 @@ def find_table(path):
 
 
 def _count(path, lines, number):
-    """The number of grains that line `number`, from 0, says; so many must follow in the file."""
+    """The number of grains in line `number`, from 0; so many must follow in the file."""
     word = (lines[number].split() or [""])[0]
     if not word.isdecimal() or int(word[:10]) < 1:
         raise PackingError(f"{path}: line {number + 1}: '{word[:40]}' grains; must be a whole number > 0")
@@ -74,7 +74,7 @@ def _xyz(path, lines):
     if properties:
         return Table(_of_frames("extended xyz", frames), first, rows, _properties(path, properties[1]))
     row, names = lines[first].split() if first < len(lines) else [], None
-    # of others nobody says what the columns are; and x y z may be without a species
+    # other columns have no names; x y z may be without a species
     if len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
         names = ("species", "x", "y", "z", "radius")[: len(row)]
     return Table(_of_frames("xyz", frames), first, rows, names)
@@ -113,7 +113,7 @@ def _data(path, lines):
             rows = _count(path, lines, number)
         if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", line):
             style, names = section[1], ATOM_STYLES.get(section[1])
-            kind = f"LAMMPS data, atom style {style or 'not said'}"
+            kind = f"LAMMPS data, atom style {style or 'without name'}"
             return Table(kind, number + 1, rows, names and tuple(names.split()))
     raise PackingError(f"{path}: no section Atoms; must have one")
 

@@ -19,7 +19,7 @@ SIGNS = {ast.UAdd: operator.pos, ast.USub: operator.neg}
 
 
 class NotANumber(ValueError):
-    """A text that is no arithmetic, or beyond the limits; the message says which, in a few words."""
+    """A text that is no arithmetic, or beyond the limits; with the reason in a few words."""
 
 
 def evaluate(text):

@@ -3,10 +3,10 @@
     python3 yade_scripts/studies/sintered_growth.py SIZE [-j JOBS]    of a table (desk, full, beyond, decide)
 
 Section 4 makes aggregates of 1,024 grains by "collision simulations" at V_g, section 5.2 speaks of "successive
-collisions"; it isn't said from what they start. Here an aggregate starts as a BCCA cluster of START grains and collides
+collisions", without their start. Here an aggregate starts as a BCCA cluster of START grains and collides
 head-on with itself, both in random orientations, until it has 1,024 grains: each collision's largest piece, at rest, is
-the next one's aggregate (yade_scripts/packings/from_run.py). A generation in which the largest piece has less than STUCK
-of the grains is tried again in other orientations, ATTEMPTS times.
+the next one's aggregate (packings/from_run.py). A generation whose largest piece has less than STUCK of the grains is
+tried again in other orientations, ATTEMPTS times.
 
 The start decides how compact aggregates are. The paper's Fig. 6 has about two contacts a grain at low V_g and three at
 high V_g, and Fig. 17 needs fewer than 2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (by eqs 14 to 19). One
@@ -102,7 +102,7 @@ def _collide(aggregate, grown, files, run):
         out=run,
     )
     command = ["yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "collide.py")]
-    # A table's row chosen by a batch that calls this is not meant for the collisions here.
+    # yade-batch's choice of a table's row must not reach the collisions here.
     environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
     done = subprocess.run(
         command + [f"{name}={value}" for name, value in arguments.items()],
@@ -111,8 +111,8 @@ def _collide(aggregate, grown, files, run):
         env=environment,
     )
     if done.returncode:
-        said = [line for line in done.stderr.splitlines() if line.strip()]
-        raise PackingError(f"{grown.name}: collide.py failed: {said[-1] if said else done.returncode}")
+        lines = [line for line in done.stderr.splitlines() if line.strip()]
+        raise PackingError(f"{grown.name}: collide.py failed: {lines[-1] if lines else done.returncode}")
 
 
 def main(arguments):

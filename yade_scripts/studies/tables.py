@@ -3,7 +3,7 @@
     python3 yade_scripts/studies/tables.py             write all that are not there (make tables)
     python3 yade_scripts/studies/tables.py NAME ...    write these anew
 
-A module STUDY.py has tables(): {size: (rows, head)}, of which each becomes STUDY-SIZE.table in this folder.
+A module STUDY.py has tables(): {size: (rows, head)}; each becomes STUDY-SIZE.table in this folder.
 """
 
 import os

@@ -29,7 +29,7 @@ REFERENCE_SEEDS, REFERENCE_PICOSECONDS = 3, (0, 6)  # at the paper's size
 STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its ledger closes to 1e-3 of K(0)
 
 OWN_PAIRS = {REFERENCE[1]: 4, 18: 6}  # by i; v_fra is 50 to 60 m/s in the paper
-EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, of which the desk table has the same pairs
+EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, whose pairs the desk table has too
 # Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of
 # K(0).
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
