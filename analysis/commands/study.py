@@ -10,7 +10,7 @@ from pathlib import Path
 from ..printable import printable, printable_lines
 from . import FAILED, complain
 
-BEFORE = ("compressed", "elastoplastic")  # of the old form
+BEFORE = ("compressed",)  # of the old form
 FORMATS = ("text", "markdown", "json", "csv")
 
 

@@ -89,7 +89,7 @@ def estimates(statistic, runs):
 
 def _jackknife(value, without):
     """Estimate from a value and the same without each pair (n,); pairs that change nothing are not behind it."""
-    behind = without[without != value]
+    behind = without[~(np.abs(without - value) <= 1e-13 * np.abs(value))]  # but for rounding
     n = len(behind) or len(without)
     if len(behind) < 2 or not np.isfinite(behind).all():
         return Estimate(float(value), None, n)

@@ -4,7 +4,7 @@ other."""
 import numpy as np
 import pytest
 
-from analysis.studies.elastoplastic.andrews_fit import PRINTED
+from analysis.studies.elastoplastic import PRINTED
 from analysis.theory import ICE, SILICATE, aggregates, normal_force, pair_constants
 from analysis.theory.bonds import stretching_period
 from analysis.theory.compression import *

@@ -1,1 +1,0 @@
-"""Head-on collisions of close-packed aggregates, beside Arakawa et al. (2024, A24)."""
