@@ -116,25 +116,20 @@ def collision_errors(parameters, constants):
 
     constants: of a contact, with those of a bond under "bond" where grains are sintered.
     """
-    kinetic, of_grain = energies(parameters, constants)
+    grains = parameters.grains, parameters.of_projectile().grains
+    kinetic, of_grain = energies_of(constants, grains, parameters.velocity)
     events, speed = ledger_errors(kinetic, of_grain)
     factor = scene_factor(parameters)
     found = {"forming and breaking contacts": factor * events, "the speed of the impact": factor * speed}
-    bond = constants.get("bond")
-    if bond:
+    if bond := constants.get("bond"):
         over = bond["breakingEnergy"] / (constants["pullOffForce"] * constants["pullOffOverlap"])
         breaking = BREAKING if parameters.packing == "cpe" else BREAKING_FLUFFY
-        found["breaking bonds"] = bond_errors(kinetic / over, of_grain / over, breaking) / bond_step(constants) ** 2
+        found["breaking bonds"] = _bond_errors(kinetic / over, of_grain / over, breaking) / bond_step(constants) ** 2
     return found
 
 
-def energies(parameters, constants):
-    """(K(0), the same for a grain) of a collision, both over F_c delta_c."""
-    return energies_of(constants, (parameters.grains, parameters.of_projectile().grains), parameters.velocity)
-
-
 def energies_of(constants, grains, velocity):
-    """energies() of a pair of so many grains (target, projectile)."""
+    """(K(0), the same for a grain) of a pair of so many grains (target, projectile), both over F_c delta_c."""
     contact = constants["pullOffForce"] * constants["pullOffOverlap"]
     target, projectile = grains
     reduced = 2 * constants["reducedMass"] * target * projectile / (target + projectile)  # a grain's mass is 2 m*
@@ -150,19 +145,14 @@ def scene_factor(parameters):
     return (FLUFFY if parameters.planar or parameters.packing != "cpe" else 1.0) * plate
 
 
-def ledger_errors(kinetic, of_grain, events=EVENTS, decay=DECAY, speed=SPEED):
-    """(of events, of speed): error of the ledger [K(0)] over the square of the step [t0], 95 % level.
-
-    kinetic, of_grain: as energies() gives them, numbers or arrays. Of CPE aggregates in space.
-    """
-    return events * (1 + 1 / kinetic) ** 0.5 * kinetic**-decay, speed * of_grain / (1 + of_grain) ** 0.8
+def ledger_errors(kinetic, of_grain):
+    """(of events, of speed): error of the ledger [K(0)] over the square of the step [t0], of CPE aggregates in space;
+    arguments as energies_of() gives them."""
+    return EVENTS * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY, SPEED * of_grain / (1 + of_grain) ** 0.8
 
 
-def bond_errors(kinetic, of_grain, breaking):
-    """Error of breaking bonds [K(0)] over the square of the step [stability.bond_step].
-
-    kinetic, of_grain: as energies() gives them, over the energy that breaks a bond; numbers or arrays.
-    """
+def _bond_errors(kinetic, of_grain, breaking):
+    """The same of breaking bonds, over the square of the step [stability.bond_step]; energies over that of a bond."""
     return breaking * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY * of_grain**2 / (of_grain**2 + FEW**2)
 
 

@@ -214,25 +214,16 @@ def place(parameters, overlap):
         return parameters, [placed], [np.array([-parameters.velocity, 0.0, 0.0])]
     pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
     if parameters.packing == "cpe":
-        where = placements(parameters.radius, parameters.grainRadius, parameters.velocity, parameters.impact)
-        pair, velocities = [packings.moved(p, centre) for p, (centre, _) in zip(pair, where)], [v for _, v in where]
+        # A24 section 3: centres at -/+(R_agg + r) in x; offset in y as in A22 eq 27
+        reach = (parameters.radius + 1) * parameters.grainRadius
+        centre = np.array([reach, parameters.impact * reach, 0.0])
+        half = np.array([parameters.velocity / 2, 0.0, 0.0])
+        pair, velocities = [packings.moved(pair[0], -centre), packings.moved(pair[1], centre)], [half, -half]
     else:
         parameters = _with_size(parameters, pair)
         pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
     packings.require_apart(*pair)
     return parameters, pair, velocities
-
-
-def placements(radius, grain_radius, velocity, impact):
-    """Centre and velocity, ((3,), (3,)), of both CPE aggregates: A24 section 3, offset as in A22 eq 27.
-
-    Centres at -/+(R_agg + r) in x and -/+ impact (R_agg + r) in y; velocities +/- velocity/2 in x. radius: R_agg in
-    grain radii; grain_radius: r [m]; velocity [m/s].
-    """
-    reach = (radius + 1) * grain_radius
-    centre = np.array([reach, impact * reach, 0.0])
-    half = np.array([velocity / 2, 0.0, 0.0])
-    return (-centre, half), (centre, -half)
 
 
 def _with_size(parameters, pair):
