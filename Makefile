@@ -285,7 +285,7 @@ $(STUDIES:%=study-%): study-%: all
 # Before: aggregates compacted by collisions of their own; spheres cut out of compressed cells; the atlas's packings and table.
 study-sintered: before-sintered
 before-sintered: all
-	@$(PYTHON) yade_scripts/studies/sintered_growth.py $(SIZE) -j $(JOBS)
+	@$(PYTHON) yade_scripts/studies/sintered.py grow $(SIZE) -j $(JOBS)
 study-compressed: before-compressed
 before-compressed: all
 	@$(PYTHON) yade_scripts/study.py yade_scripts/studies/compressed-cells.table -j $(JOBS)

@@ -1,19 +1,47 @@
-"""Tables of the study of Sirono & Ueno (2017, S17): head-on collisions of sintered aggregates of 1,024 ice grains.
+"""The study of Sirono & Ueno (2017, S17): head-on collisions of sintered aggregates of 1,024 ice grains.
 
-full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the
-paper has five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds
-each. beyond: what the desk's runs leave open: compacted aggregates in space, springs that are held at their limits,
-xi_crit = 30 Angstrom. decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the
-order of their worth: one seed of every point after another. Compacted aggregates are read from files that
-sintered_growth.py makes first."""
+    python3 yade_scripts/studies/sintered.py grow SIZE [-j JOBS]    the compacted aggregates of a table that are missing
 
+Tables. full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom;
+the paper has five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds
+each. beyond: what the desk's runs leave open: compacted aggregates in space, springs held at their limits, xi_crit = 30
+Angstrom. decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the order of their
+worth: one seed of every point after another.
+
+Compacted aggregates. Section 4 makes them by "collision simulations" at V_g, section 5.2 speaks of "successive
+collisions", without their start. Here two BCCA clusters of START grains, the same one in two random orientations,
+collide head-on, and the largest piece comes to rest (packings/from_run.py). The start decides how compact aggregates
+are: the paper's Fig. 6 has about two contacts a grain at low V_g and three at high V_g, and Fig. 17 needs fewer than
+2.33 at 1 m/s, 2.31 at 2 m/s and more than 2.36 at 3 m/s (by eqs 14 to 19). START = 512 gives 2.15, 2.49 and 3.01 at 1,
+3 and 10 m/s (one seed); six collisions from 16 grains gave 2.5, 2.9 and 3.2, which Figs 6 and 17 exclude. A collision
+whose largest piece has less than STUCK of the grains is tried again in other orientations, ATTEMPTS times.
+"""
+
+import argparse
 import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+
+TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, TOP)
+from yade_scripts import packings
+from yade_scripts.materials import MATERIALS, pair_constants
+from yade_scripts.packings.from_run import largest_piece_of_run, turned
+from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.parameters.errors import tell
+from yade_scripts.run.parameters import CORES
 
 GRAINS = 1024
 SEEDS = range(1, 11)
 SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
-GROWN = "runs/sintered-grown"  # where sintered_growth.py leaves compacted aggregates
+GROWN = "runs/sintered-grown"  # compacted aggregates, each in two orientations: NAME.npz and NAME-b.npz
+START, STUCK, ATTEMPTS = 512, 0.9, 5
+RADIUS = 1e-7  # m
+# A collision that compacts lasts until the two have moved so many times their diameters at V_g, at most DURATION.
+CROSSINGS = 3.0
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
 # Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece
@@ -187,7 +215,7 @@ def rows(size):
 
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {}
 {} seeds a point where the paper has five runs.
-Compacted aggregates (packing = file) come from sintered_growth.py, which make study-sintered runs first.
+Compacted aggregates (packing = file) are made by sintered.py grow, which make study-sintered runs first.
 The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
 after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2) and
 slide with the spring of eqs 11 and 12 as printed (slidingStiffnessFactor = 2); 20,000 periods of the stretching
@@ -206,3 +234,79 @@ WHICH = {
 def tables():
     """{size: (rows, head)}."""
     return {size: (rows(size), HEAD.format(which, len(seeds(size)))) for size, which in WHICH.items()}
+
+
+def grow(grown):
+    """Make both packings of a compacted aggregate; one line about it. Raises PackingError when halves don't stick."""
+    overlap = pair_constants(MATERIALS["ice"])["equilibriumOverlap"]
+    half = packings.bcca(START, RADIUS, overlap, grown.seed, 0, bool(grown.planar))
+    with tempfile.TemporaryDirectory() as folder:
+        for attempt in range(ATTEMPTS):
+            run = os.path.join(folder, str(attempt))
+            files = [f"{run}-{index}.npz" for index in (0, 1)]
+            for index, file in enumerate(files):
+                packings.save(file, turned(half, grown.seed, 1000 + 2 * attempt + index))
+            _collide(half, grown, files, run)
+            found = largest_piece_of_run(run)
+            if found.grains >= STUCK * 2 * START:
+                break
+        else:
+            raise PackingError(
+                f"{grown.name}: two aggregates of {START} grains did not stick at {grown.velocity:g} m/s in {ATTEMPTS} "
+                "orientations; must be a smaller growth velocity"
+            )
+    about = {**found.parameters, "growthVelocity": grown.velocity, "criticalRolling": grown.rolling * 1e-10}
+    about |= {"limit": grown.limit, "start": START, "generations": 1}
+    aggregate = Packing(found.position, found.radius, grown.seed, about)
+    for index in (1, 0):  # the target last: when it is there, both are
+        packings.save(grown.file(index), turned(aggregate, grown.seed, 100 + index))
+    contacts = 2 * len(packings.contacts(aggregate)) / aggregate.grains
+    return f"{grown.name}: {aggregate.grains} grains, {contacts:.2f} contacts a grain"
+
+
+def _collide(half, grown, files, run):
+    arguments = dict(
+        packing="file",
+        file=files[0],
+        projectileFile=files[1],
+        planar=grown.planar,
+        velocity=grown.velocity,
+        criticalRolling=grown.rolling * 1e-10,
+        limit=grown.limit,
+        slidingStiffnessFactor=SLIDING,
+        duration=min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / grown.velocity),
+        states=2,
+        threads=1,
+        out=run,
+    )
+    command = ["yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "collide.py")]
+    command += [f"{name}={value}" for name, value in arguments.items()]
+    # yade-batch's choice of a table's row must not reach the collisions here.
+    environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    if done.returncode:
+        lines = [line for line in done.stderr.splitlines() if line.strip()]
+        raise PackingError(f"{grown.name}: collide.py failed: {lines[-1] if lines else done.returncode}")
+
+
+def main(arguments):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["grow"])
+    parser.add_argument("size", choices=sorted(POINTS))
+    parser.add_argument("-j", "--jobs", type=int, default=CORES)
+    options = parser.parse_args(arguments)
+    missing = [each for each in grown(options.size) if not os.path.exists(each.file(0))]
+    os.makedirs(GROWN, exist_ok=True)
+    failed = 0
+    with ThreadPoolExecutor(max(1, options.jobs)) as pool:
+        for found in [pool.submit(grow, each) for each in missing]:
+            try:
+                print(found.result(), flush=True)
+            except (PackingError, OSError) as error:
+                failed = 1
+                tell(error, "sintered.py")
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
