@@ -6,7 +6,6 @@ end of the run but a kill. One that is left is over when it is of this machine, 
 more, or when Slurm says that its job has ended. Of another machine nothing else can tell: such a folder is taken for
 one in use."""
 
-import fcntl
 import json
 import os
 import re
@@ -60,6 +59,8 @@ def take(folder):
     """Have a run folder (path) for this process until it ends, or until release(); returns the handle of the folder.
 
     Raises InUse where another run has it, and OSError where it cannot be written."""
+    import fcntl  # of POSIX; the analysis of runs does without
+
     handle = os.open(folder, os.O_RDONLY)
     try:
         try:

@@ -158,8 +158,8 @@ def over_offsets(twelfths=TWELFTHS, values="growth"):
     weights = np.convolve(np.diff(twelfths) / (twelfths[-1] - twelfths[0]), [0.5, 0.5])
 
     def of(runs):
-        means = complete(runs, twelfths).groupby("twelfth")[values].mean()
-        return means.to_numpy() @ weights if len(means) else np.nan
+        means = [np.mean(own.to_list(), axis=0) for _, own in complete(runs, twelfths).groupby("twelfth")[values]]
+        return weights @ np.array(means) if means else np.nan
 
     return of
 
@@ -184,7 +184,7 @@ def sizes_of(text):
 
 def small_fragments(runs):
     """Number (runs,) of fragments of one or two grains."""
-    return runs.fragments.map(lambda text: np.count_nonzero(sizes_of(text) <= 2))
+    return runs.fragments.map(lambda text: np.count_nonzero(sizes_of(text) <= 2)).astype(float)
 
 
 def by_size(runs, cumulative):

@@ -162,9 +162,10 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys, tmp
     assert not said
     kept = pandas.read_csv(folder / "comparison.csv").set_index("quantity")
     assert list(found) == list(kept.index)
+    error = 1e-9 + 1e-3 * kept.error.fillna(0.0)  # fits end a little elsewhere with another scipy
     for column in ("ours", "error"):
         made = np.array([row[column] for row in found.values()], dtype=float)
-        assert np.allclose(made, kept[column], rtol=1e-6, atol=1e-9, equal_nan=True)
+        assert np.allclose(made, kept[column], rtol=1e-6, atol=error, equal_nan=True)
     words = [row["word"] for row in found.values()]
     assert words == kept.word.fillna("").tolist()
     table = page.split(pages.START)[1].split(pages.END)[0]
