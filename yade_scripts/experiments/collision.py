@@ -83,17 +83,15 @@ class CollisionParameters(AggregateParameters, RunParameters):
         None,
         POSITIVE,
         f"time that is simulated (until the first touch, and {REBOUND_PER_RADIUS} t0 per grain radius of the "
-        "aggregates' "
-        f"radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii at "
-        "`velocity`)",
+        f"aggregates' radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii "
+        "at `velocity`)",
         "s",
     )
     impactStepFraction: float | None = parameter(
         None,
         POSITIVE,
-        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start "
-        "to the "
-        "time of the first touch and of four radii of the larger one (stepFraction all the time)",
+        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start to "
+        "the time of the first touch and of four radii of the larger one (stepFraction all the time)",
         "t0",
     )
     endWhenApart: int | None = parameter(
@@ -121,8 +119,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
             if found.initialOverlap != 1:
                 raise ParameterError(
                     f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds "
-                    "start "
-                    "at rest"
+                    "start at rest"
                 )
             if found.packing != "file":  # a file may name its material
                 collision_step.require_sintered(found.neck, pair_constants(found))

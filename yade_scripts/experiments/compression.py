@@ -59,16 +59,14 @@ class CompressionParameters(GrainParameters, RunParameters):
         PERIODIC,
         one_of(list(PACKING)),
         "what compresses: a periodic cell whose edges shrink; or two plates of the grains' material, of which the "
-        "lower one "
-        "rests and the upper one comes down, with periodic sides that stay",
+        "lower one rests and the upper one comes down, with periodic sides that stay",
     )
     grains: int = parameter(1024, between(2, MOST_GROWN["bcca"]), "grains of the cluster or layer")
     packing: str | None = parameter(
         None,
         one_of(list(PACKING.values())),
         "how it is made: with boundary = periodic by cluster-cluster aggregation (bcca), between walls by ballistic "
-        "deposition "
-        "on the lower one, as high as wide (rbd)",
+        "deposition on the lower one, as high as wide (rbd)",
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
     strainRate: float = parameter(
@@ -82,16 +80,14 @@ class CompressionParameters(GrainParameters, RunParameters):
         None,
         Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
         "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge; that of the "
-        "layer "
-        "between walls, where it cannot be given)",
+        "layer between walls, where it cannot be given)",
         "1",
     )
     finalFilling: float | None = parameter(
         None,
         Check(
             f"> initialFilling and at most that of random close packing ({RANDOM_CLOSE_PACKING:g}, of grains that "
-            "overlap a "
-            "little more)",
+            "overlap a little more)",
             lambda x: 0 < x < 1,
         ),
         f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
@@ -111,8 +107,7 @@ class CompressionParameters(GrainParameters, RunParameters):
         None,
         Check("> 0 and below finalFilling", lambda x: x > 0),
         f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); at finalPressure the "
-        "cell "
-        "may be looser already: then it is not stretched",
+        "cell may be looser already: then it is not stretched",
         "1",
     )
     states: int = parameter(

@@ -118,8 +118,7 @@ def _require_time_for_pressure(parameters, time_unit):
         slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
         raise ParameterError(
             f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over "
-            "after "
-            f"{lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
+            f"after {lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
         )
 
 

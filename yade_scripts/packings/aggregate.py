@@ -70,8 +70,7 @@ class AggregateParameters(GrainParameters):
         0,
         SWITCH,
         "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: "
-        "impact is that "
-        "of the spheres",
+        "impact is that of the spheres",
     )
     initialOverlap: float = parameter(
         1.0,

@@ -165,8 +165,7 @@ def _require_rest(path, packing, grain_radius, overlap):
     if stored is not None and abs(stored - overlap) > AT_REST * overlap:
         raise PackingError(
             f"{path}: its contacts overlap by {stored:.3g} m, those of these grains at rest by {overlap:.3g} m; must "
-            "be a "
-            "packing of grains of the same material"
+            "be a packing of grains of the same material"
         )
     pairs = contacts(packing)
     if not len(pairs):

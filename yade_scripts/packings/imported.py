@@ -227,10 +227,9 @@ def _require_shallow(path, scaled, pairs, overlap):
         worst = np.argmax(beyond / smaller)
         first, second = pairs[worst]
         raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the "
-            "smaller one "
-            f"more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a "
-            "larger tolerance"
+            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller "
+            f"one more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or "
+            "a larger tolerance"
         )
 
 

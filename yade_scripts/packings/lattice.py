@@ -67,9 +67,8 @@ def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=
     if wanted > len(sites):
         at_most = len(sites) * (grain_radius / aggregate_radius) ** (2 if planar else 3)
         raise PackingError(
-            f"filling = {filling:g}: takes {wanted} grains, but the lattice has "
-            f"{len(sites)} in this sphere (seed {seed}, aggregate {index}); must be at most {at_most:.4f} here, "
-            f"{limit:.4f} in large spheres (A24 eq 40)"
+            f"filling = {filling:g}: takes {wanted} grains, but the lattice has {len(sites)} in this sphere (seed "
+            f"{seed}, aggregate {index}); must be at most {at_most:.4f} here, {limit:.4f} in large spheres (A24 eq 40)"
         )
     kept = np.sort(stream.choice(len(sites), wanted, replace=False, shuffle=False))
     turn = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * pi)]) if planar else Rotation.random(random_state=stream)
