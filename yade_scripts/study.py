@@ -200,11 +200,11 @@ def close(study, stop):
 
 def main(arguments):
     options = parse_arguments(arguments)
-    table = find_table(options.table)
-    if options.status and place_of(table) != Path.cwd():
-        place, table = place_of(table), os.path.abspath(table)
-        os.chdir(place)
     try:
+        table = find_table(options.table)
+        if options.status and place_of(table) != Path.cwd():
+            place, table = place_of(table), os.path.abspath(table)
+            os.chdir(place)
         study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
