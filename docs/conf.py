@@ -37,7 +37,7 @@ include_patterns = [
     "contact_law/engine/*.md",
 ]
 include_patterns += ["tests/conformance/*.md"]
-exclude_patterns = ["build", "runs", ".pytest_cache", "analysis/gallery/*/details.md"]
+exclude_patterns = ["build", "runs", ".pytest_cache"]
 myst_heading_anchors = 3
 html_theme = "furo"
 html_title = project

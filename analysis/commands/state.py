@@ -7,7 +7,7 @@ from pathlib import Path
 from ..printable import printable
 from . import FAILED, RUNS, complain
 
-OF_STUDIES = "runs.csv", "comparison.json"
+OF_STUDIES = ("runs.csv",)
 
 
 def add_parsers(commands):

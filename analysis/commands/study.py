@@ -10,7 +10,6 @@ from pathlib import Path
 from ..printable import printable, printable_lines
 from . import FAILED, complain
 
-BEFORE = ("compressed",)  # of the old form
 FORMATS = ("text", "markdown", "json", "csv")
 
 
@@ -51,20 +50,12 @@ def _page_file(text):
 def run(options):
     """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
     # pandas and scipy take a moment to load, and the parser does without them.
-    from ..studies.gathering import gather
+    from ..studies.gather import gather
     from ..studies.study import NAMES, find, own_errors
 
-    if options.name in BEFORE:
-        from . import study_before
-
-        return study_before.run(options)
-
     if not options.name:
-        from ..studies import find as before
-
-        for name in sorted((*NAMES, *BEFORE)):
-            title = (find(name) if name in NAMES else before.find(name)).title
-            print(f"{name:<13}  {title}")
+        for name in NAMES:
+            print(f"{name:<13}  {find(name).title}")
         return 0
     study = find(options.name)
     if not options.runs:
@@ -92,7 +83,7 @@ def run(options):
 def _require_places(options, study):
     """OSError where a file cannot be written, is one of several that are read, or is not of this study."""
     from ..runs.files import require_output
-    from ..studies.gathering import TABLE_FILE, require_own
+    from ..studies.gather import TABLE_FILE, require_own
 
     if options.page:
         require_output(options.page)
@@ -105,7 +96,7 @@ def _require_places(options, study):
 
 def _is_only_input(options):
     """Whether the table in the folder is all that is read: then it stays as it is."""
-    from ..studies.gathering import TABLE_FILE
+    from ..studies.gather import TABLE_FILE
 
     table = os.path.realpath(os.path.join(options.figures, TABLE_FILE))
     return [os.path.realpath(path) for path in options.runs] == [table]
@@ -132,7 +123,7 @@ def _write(options, study, found, runs, rows):
     from ..runs.collect import provenance_lines
     from ..runs.files import write_file
     from ..studies.comparison import of_table
-    from ..studies.gathering import TABLE_FILE
+    from ..studies.gather import TABLE_FILE
     from ..studies.pages import START, filled, html_page
 
     with nullcontext(options.figures) if options.figures else tempfile.TemporaryDirectory() as folder:

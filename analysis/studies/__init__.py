@@ -1,8 +1,12 @@
-"""Studies: what is made of many runs, beside a paper's numbers. Each has a folder here, and nothing else names it:
+"""Studies: many runs beside a paper's numbers. A paper is one module that reads from top to bottom.
 
-    NAME/study.py     STUDY, a definition.Study: which runs, what is measured of a run, results, sections of the report
-    NAME/figures.py   FIGURES, a tuple of definition.StudyFigure; may be left out
-    NAME/paper.toml   the paper's numbers and the page's words (paper.py); may be left out
-    NAME/predictions.csv   what was foretold (predictions.py); may be left out
+    NAME.py        STUDY: which runs, what is measured of each, statistics, a paper's numbers beside ours, figures
+    study.py       what STUDY is made of, and a study of one's own (collision_study)
+    columns.py     columns of runs.csv, and how a run folder fills them
+    gather.py      from paths to one table of runs
+    estimates.py   a number of a table of runs with its standard error
+    comparison.py  a paper's number beside it, in one of four words
+    figures.py     curves of estimates, states of collisions
+    pages.py       tables in pages that a person has written, and the page of a user's runs
 
-`python3 -m analysis study NAME RUNS` does the rest: analyse.py."""
+`python3 -m analysis study NAME RUNS` runs one; analysis/STUDIES.md says how to write one."""

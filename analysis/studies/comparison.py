@@ -10,10 +10,10 @@ import pandas
 from .estimates import Estimate
 
 AGREES, DIFFERS, UNCLEAR, NOT_RUN = "agrees", "differs", "unclear", "not run"
-LEGEND = (
-    "Ours: mean ± standard error (independent {}); difference in combined standard errors. *Agrees*: within two, these "
-    "below a quarter of the number (of the limits' width; of a one-sided limit: on its side by two). *Differs*: beyond "
-    "three. *Unclear*: all else."
+OURS = "Ours: mean ± standard error (independent {}){}"
+WORDS = (
+    "; difference in combined standard errors. *Agrees*: within two, these below a quarter of the number (of the limits' "
+    "width; of a one-sided limit: on its side by two). *Differs*: beyond three. *Unclear*: all else."
 )
 
 
@@ -128,6 +128,12 @@ def as_text(rows):
         for row in rows
     ]
     return pandas.DataFrame(cells, columns=["quantity", "paper", "ours", "difference", " "], dtype=str)
+
+
+def words_of(rows, independent):
+    """What the cells of a table mean, and how many of its comparisons agree (str)."""
+    own = OURS.format(independent, WORDS if counted(rows) else ".")
+    return f"{own}\n{counted(rows)}".rstrip("\n")
 
 
 def counted(rows):

@@ -9,7 +9,7 @@ from html import escape
 import pandas
 
 from ..version import version_text
-from .comparison import LEGEND, as_text, counted, markdown_table
+from .comparison import as_text, markdown_table, words_of
 from .study import GALLERY
 
 START, END = "<!-- table: made by `make gallery` -->", "<!-- end of the table -->"
@@ -25,7 +25,7 @@ class PageError(ValueError):
 
 def table_of(rows, independent):
     """The table of a page (str, Markdown) of comparison.Rows, and what its words mean."""
-    return f"{markdown_table(as_text(rows))}\n\n{LEGEND.format(independent)}\n{counted(rows)}".rstrip("\n")
+    return f"{markdown_table(as_text(rows))}\n\n{words_of(rows, independent)}"
 
 
 def filled(file, text, rows, independent):
@@ -47,8 +47,7 @@ def filled(file, text, rows, independent):
             raise PageError(f"{file}: its table has {quantity}: must be a quantity of comparison.csv")
     require_numbers(file, before + after, [str(row.ours) for row in rows])
     shown = markdown_table(as_text([known[quantity] for quantity in listed]))
-    words = f"{LEGEND.format(independent)}\n{counted(rows)}".rstrip("\n")
-    return f"{before}{START}\n\n{shown}\n\n{words}\n\n{END}{after}"
+    return f"{before}{START}\n\n{shown}\n\n{words_of(rows, independent)}\n\n{END}{after}"
 
 
 def require_numbers(file, text, made):

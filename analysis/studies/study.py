@@ -14,7 +14,7 @@ from ..runs.format import PARAMETER_WORDS
 from ..runs.script import module_of
 from .columns import LARGEST, OUTCOME, VELOCITY, flat, parameter, row_of
 
-NAMES = ("atlas", "compression", "elastoplastic", "sintered", "viscous")
+NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 SAYS = "must be as analysis/STUDIES.md says"
 

@@ -5,8 +5,7 @@ grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, 
 at twice the time step, and the paper's own size where Fig. 1 is, with three pairs of aggregates where the paper has
 one. Rows stand in the order of their worth: whole grids of one seed after another.
 
-prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran
-(analysis/gallery/viscous/predictions.csv), and one head-on collision of the paper's size: every second offset first,
+prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran, and one head-on collision of the paper's size: every second offset first,
 then the others. The predictions are of all 13, which the first block alone does not test.
 
 own: the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets

@@ -1,0 +1,144 @@
+"""The collision of Arakawa et al. (2024, A24) with compressed aggregates in place of close-packed and extracted (CPE) ones:
+spheres cut out of compressed cells, as Oshiro et al. (2025) make theirs, at the same filling factor, size and velocity."""
+
+from functools import partial
+
+import numpy as np
+
+from ..measures.outcome import STICKING
+from ..runs.collect import Scene
+from ..runs.format import LOST_CHANNELS
+from ..theory import ICE
+from ..theory.aggregates import bcca_strength
+from ..theory.andrews import stress_if_rigid
+from . import columns
+from .columns import AT_MAXIMUM, Column, NotMeasured, grains_text, group, one
+from .comparison import Row
+from .estimates import beside, ending, estimate, mean
+from .figures import curves
+from .study import Study
+
+KINDS = ("compressed", "CPE")
+PLACE = ("of", "step", "nominal", "radius", "velocity")
+
+
+def _packings(run, row):
+    """NotMeasured where the packings are no such spheres."""
+    given, abouts = run.parameters, [run.derived.get(f"{name}Packing") or {} for name in ("target", "projectile")]
+    try:
+        if given["packing"] == "cpe":
+            radius, filling = given["radius"] * float(run.derived["grainRadius"]), float(given["filling"])
+            return 0, int(given["seed"]), filling, filling, radius
+        cell, nominal, radius = (abouts[0][name] for name in ("cell", "nominal", "aggregateRadius"))
+        return 1, int(cell), float(nominal), sum(float(about["filling"]) for about in abouts) / 2, float(radius)
+    except (KeyError, TypeError, ValueError):
+        raise NotMeasured(f"{run.path}: neither CPE aggregates nor spheres cut out of compressed cells") from None
+
+
+def _compression(run, row):
+    """From the first touch on."""
+    d, time = (float(run.history[name][np.argmax(run.history["contacts_between"] > 0)]) for name in ("d", "time"))
+    maximum, _ = columns.largest_compression(run)
+    return maximum.length - d, maximum.time - time
+
+
+MEASURED = (
+    group(
+        _packings,
+        Column("compressed", "", "1: cut out of a compressed cell, 0: CPE", kind="i"),
+        Column("pair", "", "number of the pair: the packings' seed (CPE) or that of their cell", kind="i"),
+        Column("nominal", "", "filling factor that was asked for"),
+        Column("filling", "", "filling factor N (r/R)^3, mean of both aggregates"),
+        Column("radius", "m", "R, of the sphere that holds all centres"),
+    ),
+    columns.VELOCITY,
+    one("step", "t0", "time step", lambda run: float(run.derived["timeStep"]) / float(run.derived["timeUnit"])),
+    columns.MATERIAL,
+    *columns.GRAINS,
+    group(
+        _compression,
+        Column("compression", "m", "d_max less d at the first touch: how much nearer the halves come"),
+        Column("t_max", "s", "time of d_max after the first touch"),
+    ),
+    *columns.COMPACT,
+)
+
+
+def prepared(runs):
+    """The table with the kind of aggregates, lengths in grain radii, and what is lost until d_max [% of K(0)]."""
+    return runs.assign(
+        kind=np.where(runs.compressed == 1, *KINDS),
+        of=[grains_text(row) for row in runs.to_dict("records")],
+        radius=(runs.radius / runs.grainRadius).round(6),
+        step=runs.step.round(9),
+        depth=runs.compression / runs.grainRadius,
+        lost=100 * runs[[AT_MAXIMUM.format(channel) for channel in LOST_CHANNELS]].sum(axis=1),
+    )
+
+
+def over_static(runs):
+    """Yield stress, were they rigid-plastic spheres (A24 eq 31, R* = R/2), over that of quasistatic compression of BCCA
+    aggregates (eq 44)."""
+    place = runs.iloc[0] if len(runs) else dict.fromkeys(("radius", "velocity", "nominal"), np.nan)
+    ratio = mean("depth")(runs) / (0.5 * place["radius"])
+    density = place["nominal"] * ICE.density
+    return stress_if_rigid(ratio, place["velocity"], density) / bcca_strength(place["nominal"])
+
+
+def rows(runs):
+    """Both kinds of aggregates at each place: what the collision adds to the static yield stress, and what the kind does."""
+    for (of, step, nominal, radius, velocity), own in runs.groupby(list(PLACE)):
+        kinds = [own[own.kind == kind] for kind in KINDS]
+        usual = of == "ice" and np.isclose(step, 0.2) and np.isclose(radius, 20)
+        place = f"φ = {nominal:g}, {velocity:.3g} m/s" + ("" if usual else f", {of}, R = {radius:g} r, {step:g} t0")
+        ratio = beside(mean("depth"), *kinds, of=np.divide)
+        yield Row(f"compression, compressed over CPE, {place}", ratio)
+        square = beside(mean("depth"), *kinds, of=lambda a, b: (a / b) ** 2)
+        yield Row(f"yield stress, CPE over compressed (the square), {place}", square)
+        for kind, each in zip(KINDS, kinds):
+            what = f"{kind}, {place}"
+            if of == "ice":
+                yield Row(f"yield stress over A24's static one, {what}", estimate(over_static, each))
+            yield Row(f"compression from the first touch to d_max, {what} [r]", estimate(mean("depth"), each))
+            yield Row(f"its time, {what} [ns]", estimate(mean(lambda r: r.t_max * 1e9), each))
+            yield Row(f"contacts of a grain, {what}", estimate(mean("coordination"), each))
+            yield Row(f"lost until d_max, {what} [% of K(0)]", estimate(mean("lost"), each))
+            for way in ("sliding", "rolling", "twisting"):
+                lost = mean(lambda r: 100 * r[AT_MAXIMUM.format(f"{way}Dissipation")])
+                yield Row(f"lost by {way} until d_max, {what} [% of K(0)]", estimate(lost, each))
+            returned = mean(lambda r: 100 * (r.return_speed / r.velocity) ** 2)
+            yield Row(f"returned when the halves part fastest, {what} [% of K(0)]", estimate(returned, each))
+            yield Row(f"sticking, {what}", ending(each, STICKING))
+
+
+def figures(runs):
+    """How much softer compressed aggregates are, and where the work goes."""
+    ice = runs[(runs.of == "ice") & np.isclose(runs.radius, 20) & np.isclose(runs.step, 0.2)]
+    ice = ice.assign(filling=[f"φ = {own:g}" for own in ice.nominal])
+    look = {"log": "x", "x_label": "$v$ [m/s]"}
+
+    def ratio(own):
+        return beside(mean("depth"), *(own[own.kind == kind] for kind in KINDS), of=np.divide)
+
+    figure = curves(ice, ratio, "velocity", "filling", y_label="compressed over CPE", level=1.0, **look)
+    yield "ratio", "Compression from the first touch to d_max, compressed over CPE aggregates.", figure
+    depth = partial(estimate, mean("depth"))
+    figure = curves(ice, depth, "velocity", "kind", "filling", y_label="compression [$r$]", **look)
+    yield "compression", "Compression from the first touch to d_max of both kinds.", figure
+
+
+STUDY = Study(
+    title="Collisions of close-packed and of compressed aggregates",
+    question="Do compressed aggregates collide as close-packed and extracted (CPE) ones of the same filling factor do?",
+    scene=Scene(
+        "the study of CPE and compressed aggregates",
+        columns.HEAD_ON_ICE,
+        ("velocity",),
+        measured=("compressed", "nominal", "radius", "pair", "step", *columns.OF_GRAINS),
+    ),
+    measured=MEASURED,
+    pair=("compressed", "pair"),
+    rows=rows,
+    figures=figures,
+    prepared=prepared,
+)

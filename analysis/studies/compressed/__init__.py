@@ -1,1 +1,0 @@
-"""The collision of Arakawa et al. (2024) with compressed aggregates in place of close-packed and extracted (CPE) ones."""
