@@ -13,6 +13,7 @@ from written_runs import two_pairs
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
 from analysis.studies import pages
+from analysis.studies.comparison import AGREES, DIFFERS, NOT_RUN, UNCLEAR
 from analysis.studies.figures import snapshots
 from analysis.studies.study import GALLERY, NAMES
 
@@ -174,3 +175,12 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys, tmp
     assert len(shown) <= 8
     for quantity, _, ours, *_ in shown:
         assert ours in (found[quantity[2:]]["text"], "not run")
+
+
+def test_the_pages_above_all_studies_have_their_numbers():
+    assert pages.main() == 0
+    text = (GALLERY / "README.md").read_text()
+    for name, *numbers in re.findall(r"\((\w+)/README.md\) \|" + r" (\d+) \|" * 5, text):
+        words = pandas.read_csv(GALLERY / name / "comparison.csv").query("paper.notna()").word
+        counted = [len(words), *((words == word).sum() for word in (AGREES, DIFFERS, UNCLEAR, NOT_RUN))]
+        assert [int(number) for number in numbers] == counted, name
