@@ -145,7 +145,8 @@ def _write(options, study, found, runs, rows):
 
 
 def _draw(study, runs, folder, readme):
-    """[(caption, file)] of the figures that there is something to draw of; with a README (str) of those that it shows."""
+    """[(caption, file)] of the figures that there is something to draw of; with a README (str) of those that it
+    shows."""
     # matplotlib is slow to load, and the numbers do without it.
     from ..figures.style import save_small
     from ..progress import progress

@@ -12,7 +12,7 @@ from .estimates import Estimate
 AGREES, DIFFERS, UNCLEAR, NOT_RUN = "agrees", "differs", "unclear", "not run"
 OURS = "Ours: mean ± standard error (independent {}){}"
 WORDS = (
-    "; difference in combined standard errors. *Agrees*: within two, these below a quarter of the number (of the limits' "
+    "; difference in combined standard errors. *Agrees*: within two, these below a quarter of the number (of limits' "
     "width; of a one-sided limit: on its side by two). *Differs*: beyond three. *Unclear*: all else."
 )
 

@@ -1,5 +1,6 @@
-"""The collision of Arakawa et al. (2024, A24) with compressed aggregates in place of close-packed and extracted (CPE) ones:
-spheres cut out of compressed cells, as Oshiro et al. (2025) make theirs, at the same filling factor, size and velocity."""
+"""The collision of Arakawa et al. (2024, A24) with compressed aggregates in place of close-packed and extracted (CPE)
+ones: spheres cut out of compressed cells, as Oshiro et al. (2025) make theirs, at the same filling factor, size and
+velocity."""
 
 from functools import partial
 
@@ -86,7 +87,8 @@ def over_static(runs):
 
 
 def rows(runs):
-    """Both kinds of aggregates at each place: what the collision adds to the static yield stress, and what the kind does."""
+    """Both kinds of aggregates at each place: what the collision adds to the static yield stress, and what the kind
+    does."""
     for (of, step, nominal, radius, velocity), own in runs.groupby(list(PLACE)):
         kinds = [own[own.kind == kind] for kind in KINDS]
         usual = of == "ice" and np.isclose(step, 0.2) and np.isclose(radius, 20)

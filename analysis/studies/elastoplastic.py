@@ -262,7 +262,7 @@ def _moduli(plain):
             return sigma / 1e6, soft * 1e9, poisson_ratio(1.0 / max(soft, 1e-15), bulk), returned, with_papers * 1e9
 
         start = papers_way(own)[:2] if len(own) else START  # fits without a pair start at that to all
-        sigma, soft, poisson, returned, with_papers = estimates(partial(numbers, start=start), own)
+        sigma, soft, poisson, returned, with_papers = estimates(lambda r: numbers(r, start), own)
         yield A24(f"yield stress σ, {what} [MPa]", sigma, stress / 1e6, f"{stress / 1e6:g}", "34, 35")
         printed_as = f"{1e9 / young:.3g} (E* = {young / 1e6:g} MPa)"
         yield A24(f"1/E*, {what} [1/GPa]", soft, 1e9 / young, printed_as, "34, 35")
@@ -312,8 +312,6 @@ def _new(runs, plain):
         own, what = where(plain, filling=filling, velocity=VELOCITY), f"φ = {filling}"
         returned = estimate(mean("returned"), where(own, radius=80))
         yield Row(f"returned when the halves part fastest, R = 80 r, {what} [K(0)]", returned)
-        late = mean(lambda r: r.t - printed(filling).at(r.radius, r.velocity)[1])
-        yield Row(f"t_max less that of A24's curve, all sizes, {what} [ns]", estimate(late, own))
         zones = estimate(zone_correlation, own)
         yield Row(f"correlation of d_max and the filling of the zones that meet, {what}", zones)
     of_forty = {"filling": 0.4, "radius": 40, "velocity": VELOCITY}

@@ -15,20 +15,9 @@ from ..measures.outcome import NEVER_MET, UNDECIDED
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with its standard error.
-
-    Parameters
-    ----------
-    value : float
-        NaN where it is not known.
-    error : float or None
-        Standard error; None with fewer than two pairs, or where it is undefined without one of them; 0 for a closed
-        form.
-    pairs : int
-        Independent pairs (or clusters, runs) behind it; 0 for a closed form.
-    counted : str
-        Of a fraction: '3 of 4', or '3 of 4, 1 undecided'.
-    """
+    """A number (NaN: not known) with its standard error (None: fewer than two pairs, or undefined without one of them;
+    0: a closed form), the independent pairs behind it (0: a closed form), and of a fraction how it was counted, '3 of
+    4'."""
 
     value: float
     error: float | None = 0.0
@@ -56,23 +45,10 @@ def where(runs, **values):
 
 
 def estimate(statistic, runs):
-    """Estimate of a statistic of runs.
+    """Estimate of a statistic, a function from a DataFrame to a number (NaN where the runs do not suffice), of runs
+    with the column `pair`, best those alone that it is about.
 
-    Parameters
-    ----------
-    statistic : callable
-        From a DataFrame to a number; NaN where the runs do not suffice.
-    runs : DataFrame
-        Runs with the column `pair`, best those alone that the statistic is about.
-
-    Returns
-    -------
-    Estimate
-
-    Examples
-    --------
-    >>> runs = pandas.DataFrame({"pair": [1, 2, 3, 4], "d": [1.0, 2.0, 3.0, 4.0]})
-    >>> print(estimate(mean("d"), runs))
+    >>> print(estimate(mean("d"), pandas.DataFrame({"pair": [1, 2, 3, 4], "d": [1.0, 2.0, 3.0, 4.0]})))
     2.50 ± 0.65 (4)
     """
     return estimates(lambda own: [statistic(own)], runs)[0]
@@ -117,24 +93,10 @@ def beside(statistic, one, other, of=np.subtract):
 
 
 def fraction(runs, so, undecided=None):
-    """Estimate of the fraction of runs that are so: p = (k + 1)/(n + 2), with the binomial error [p (1 - p)/n]^(1/2).
+    """Estimate of the fraction of runs that are so (Series of bool): p = (k + 1)/(n + 2), with the binomial error [p
+    (1 - p)/n]^(1/2); undecided (Series of bool): which runs count neither way. ValueError where a pair has several
+    runs.
 
-    Parameters
-    ----------
-    runs : DataFrame
-        With the column `pair`, of which each counts once.
-    so : Series of bool (runs,)
-        Which runs are so.
-    undecided : Series of bool (runs,), optional
-        Which runs count neither way.
-
-    Raises
-    ------
-    ValueError
-        Where a pair has several runs: n would be too large.
-
-    Examples
-    --------
     >>> runs = pandas.DataFrame({"pair": [1, 2, 3, 4]})
     >>> print(fraction(runs, runs.pair < 4))
     0.67 ± 0.24 (3 of 4)

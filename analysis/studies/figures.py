@@ -51,7 +51,7 @@ def curves(
     level : float, optional
         Where a thin line is drawn.
     limits : tuple, optional
-        Of the ordinate.
+        Of the ordinate, both.
     line : str
         '' where points are not joined.
     palette : dict, optional
@@ -84,9 +84,7 @@ def curves(
     for place in flat[len(shown) :]:
         place.set_axis_off()
     low, high = zip(*(place.get_ylim() for place in flat[: len(shown)]))
-    low, high = (
-        own if wanted is None else wanted for own, wanted in zip((min(low), max(high)), limits or (None, None))
-    )
+    low, high = limits or (min(low), max(high))
     left, right = zip(*(place.get_xlim() for place in flat[: len(shown)]))
     for place in flat[: len(shown)]:
         place.set(xlim=(min(left), max(right)), ylim=(low, high))
@@ -100,19 +98,10 @@ def curves(
 
 def points(axes, x, found, colour, label=None, marker="o", line=""):
     """Draw Estimates at x (K,) with their standard errors; open where an error is not known."""
-    value = np.array([own.value for own in found])
+    value, bars = np.array([own.value for own in found]), [own.error or 0.0 for own in found]
     known = np.array([own.error is not None for own in found])
-    axes.errorbar(
-        x,
-        value,
-        [own.error or 0.0 for own in found],
-        fmt=marker,
-        color=colour,
-        mfc="white",
-        ms=5,
-        capsize=3,
-        label=label,
-    )
+    look = {"fmt": marker, "color": colour, "mfc": "white", "ms": 5, "capsize": 3}
+    axes.errorbar(x, value, bars, label=label, **look)
     axes.plot(x, value, linestyle=line or "none", color=colour, lw=1.2)
     axes.plot(np.asarray(x)[known], value[known], marker, color=colour, ms=5, zorder=3)
 
@@ -148,23 +137,9 @@ class Snapshot:
 
 @styled
 def snapshots(runs, folder, title):
-    """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each: their states at these times
-    where their run folders are at hand, else those that are kept. Every panel has its own scale, with a bar in grain
-    radii.
-
-    Parameters
-    ----------
-    runs : DataFrame
-        With `run`, `folder` and `grain_radius`.
-    folder : Path
-    title : callable
-        From a row of the table (itertuples) to the title of its panels.
-
-    Returns
-    -------
-    Figure or None
-        None where no such run is in the table.
-    """
+    """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each with its title(row of the
+    table), or None: their states at these times where run folders are at hand, else those that are kept. Every panel
+    has its own scale."""
     files = {file.stem: file for file in sorted(Path(folder).glob("*.npz"))}
     rows = [row for row in runs.itertuples() if row.run in files]
     if not rows:

@@ -20,19 +20,8 @@ LENGTH = "duration", "endWhenApart"  # how long a run is: of two of one collisio
 
 @dataclass
 class Gathered:
-    """Runs of a study.
-
-    Parameters
-    ----------
-    table : DataFrame or None
-        A row a run; None where there is none.
-    provenance : dict
-        Where they come from (runs.collect).
-    notes : list of str
-        One line for each run that is left out.
-    problems : list of str
-        One line for each path or run that could not be read.
-    """
+    """Runs of a study: table (DataFrame, a row a run; None where there is none), provenance (runs.provenance), notes
+    (a line for each run left out) and problems (one for each path or run that could not be read)."""
 
     table: pandas.DataFrame = None
     provenance: dict = None

@@ -75,25 +75,6 @@ def test_a_slip_in_ones_own_file_is_one_line(own, capsys, old, new, says):
     assert says in capsys.readouterr().err.splitlines()[-1]
 
 
-def test_pairs_of_files_are_told_by_the_files(tmp_path, capsys):
-    """Aggregates from files have one seed; a table of such runs is read again."""
-    code = """
-from analysis.studies.comparison import Row
-from analysis.studies.estimates import ending
-from analysis.studies.study import collision_study
-rows = lambda runs: [Row("sticking", ending(runs, "sticking"))]
-STUDY = collision_study("T", "Q?", ("velocity", "file", "projectileFile"), rows, packing="file")
-"""
-    (tmp_path / "files.py").write_text(code)
-    for first, second in (("a1", "b1"), ("a2", "b1"), ("a1", None)):
-        files = dict(packing="file", file=first, projectileFile=second)
-        two_pairs(tmp_path / "runs" / f"{first}-{second}", 3.0, 1, **files)
-    assert main(["study", str(tmp_path / "files.py"), str(tmp_path / "runs"), "--format", "csv"]) == 0
-    (tmp_path / "runs.csv").write_text(capsys.readouterr().out)
-    for runs in ("runs", "runs.csv"):
-        assert answered(capsys, tmp_path / "files.py", tmp_path / runs)[0]["sticking"]["counted"] == "3 of 3"
-
-
 @pytest.mark.parametrize("short, long", ["ab", "ba"])
 def test_of_two_runs_of_a_collision_the_longer_one_counts(own, capsys, short, long):
     for name, more in ((short, {}), (long, dict(duration=1.0))):

@@ -1,4 +1,5 @@
-"""The study of elastoplastic aggregates (Arakawa et al. 2024): made runs whose answers are known, fits against closed forms."""
+"""The study of elastoplastic aggregates (Arakawa et al. 2024): made runs whose answers are known, fits against closed
+forms."""
 
 import numpy as np
 import pandas
@@ -32,8 +33,9 @@ def rows_of(model, scatter, sizes=(40.0, 80.0)):
 
 
 def test_the_truth_comes_out_of_made_runs(tmp_path):
-    """Three sizes at A24's velocity, four velocities at R = 80 r, four pairs that scatter by 2 %, but not in the mean. Pairs 1
-    and 2 of R = 40 r with drag too, which lets them go 5 and 4 % deeper, and pair 1 for longer, which counts once."""
+    """Three sizes at A24's velocity, four velocities at R = 80 r, four pairs that scatter by 2 %, but not in the mean.
+    Pairs 1 and 2 of R = 40 r with drag too, which lets them go 5 and 4 % deeper, and pair 1 for longer, which counts
+    once."""
     made = []
     for size in (40.0, 60.0, 80.0):
         for velocity in VELOCITIES if size == 80.0 else [a24.VELOCITY]:

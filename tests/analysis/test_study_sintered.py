@@ -1,4 +1,5 @@
-"""The study of sintered aggregates (Sirono & Ueno 2017): made runs whose answers are known, and its law of broken necks."""
+"""The study of sintered aggregates (Sirono & Ueno 2017): made runs whose answers are known, and its law of broken
+necks."""
 
 import numpy as np
 import pandas
@@ -16,8 +17,8 @@ LOST = {"rollingDissipation": 0.4, "disconnection": 0.1, "normal": 0.05}
 
 
 def made_run(path, velocity, neck, seed, largest=GRAINS, growth=0.0, broken=0, **parameters):
-    """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece beside it; necks
-    broken by sliding (one in eight) and rolling."""
+    """A collision of two straight chains: at the end a piece of `largest` grains, the rest a second piece beside it;
+    necks broken by sliding (one in eight) and rolling."""
     time, half = np.linspace(0, 4e-6, 21), GRAINS // 2
     counts = zip(BROKEN_BONDS, (0, broken // 8, broken - broken // 8, 0))
     counts = {name: np.linspace(0, number, 21).round().astype(int) for name, number in counts}

@@ -1,4 +1,5 @@
-"""The study of viscous drag (Arakawa et al. 2022): made runs whose answers are known; means over offsets, thresholds, fits."""
+"""The study of viscous drag (Arakawa et al. 2022): made runs whose answers are known; means over offsets, thresholds,
+fits."""
 
 import numpy as np
 import pandas
@@ -18,8 +19,8 @@ LOST = {"rollingDissipation": 0.4, "slidingDissipation": 0.2, "connection": 0.1,
 
 
 def made_run(path, velocity, square, viscous_time, seed, derived={}, **parameters):
-    """A collision whose largest fragment makes f_gro = (1 - B^2) 2/3 ln(V_FRA/v) + noise of the seed, the rest in fragments
-    of one and two grains; derived: as record's others."""
+    """A collision whose largest fragment makes f_gro = (1 - B^2) 2/3 ln(V_FRA/v) + noise of the seed, the rest in
+    fragments of one and two grains; derived: as record's others."""
     noise = 0.02 * np.random.default_rng((seed, int(1e12 * viscous_time))).normal()
     growth = np.clip((1 - square) * 2 / 3 * np.log(V_FRA / velocity) + noise, -0.9, 0.9)
     largest = int(round(GRAINS * (1 + growth)))
@@ -80,7 +81,8 @@ def test_one_run(tmp_path):
 
 
 def test_runs_of_other_scenes_grains_or_law_and_too_short_ones_are_left_out(tmp_path, capsys):
-    """Runs last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to meet."""
+    """Runs last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to
+    meet."""
     others = {"neck": 0.5, "sizes": "two", "limit": "cut", "slidingStiffnessFactor": 2}
     grains = {"criticalRolling": 8e-09, "young": 5.4e10, "surfaceEnergy": 0.025, "density": 2000}
     made_run(tmp_path / "own", VELOCITIES[0], 0.25, 0.0, 1, duration=6.34e-6)
@@ -96,15 +98,10 @@ def test_runs_of_other_scenes_grains_or_law_and_too_short_ones_are_left_out(tmp_
         assert f"{name} = {value if isinstance(value, str) else f'{value:g}'}" in said
 
 
-def test_rounded_numbers_are_those_of_the_grid(tmp_path, capsys):
-    """50.1 m/s, B_off = 0.2887 and 6.00001 ps beside 10^1.7, (1/12)^(1/2) and 6 ps are the same run; 45 m/s is another."""
-    made_run(tmp_path / "a", VELOCITIES[1], 1 / 12, 6e-12, 1)
-    made_run(tmp_path / "b", 50.1, 0.2887**2, 6.00001e-12, 1)
-    made_run(tmp_path / "c", 45.0, 0.3**2, 6e-12, 1)
-    _, runs, said = answered(capsys, "viscous", tmp_path)
-    assert runs == 2 and "b: the same grains, impact, velocity" in said
-    row = viscous.STUDY.measure(open_run(tmp_path / "c"))
-    assert (row["velocity"], row["impact"]) == (45.0, pytest.approx(0.3, rel=1e-15))
+def test_rounded_numbers_are_those_of_the_grid():
+    """50.1 m/s and B_off = 0.2887 are 10^1.7 m/s and (1/12)^(1/2); 45 m/s and 0.3 are not of A22's grid."""
+    of_grid = [viscous.velocity_of_grid(v) for v in (50.1, 45.0)] + [viscous.offset_of_grid(b) for b in (0.2887, 0.3)]
+    assert of_grid == pytest.approx([10**1.7, 45.0, (1 / 12) ** 0.5, 0.3], rel=1e-14)
 
 
 def test_means_over_offsets_are_exact_for_one_and_for_the_square():
