@@ -236,8 +236,7 @@ def geometric_mean(values):
 
 
 def change(one, other):
-    """Estimate of P over that of other rows, of the same clusters and filling factors: the geometric mean over
-    these."""
+    """Estimate of P over that of other rows: geometric mean over the filling factors, of the same clusters."""
     ratio = lambda of_one, of_other: geometric_mean((of_one / of_other).dropna())
     return beside(lambda rows: rows.groupby("filling").over.mean(), one, other, ratio)
 
@@ -255,20 +254,19 @@ def rows(runs):
     ice = lambda table, grains, rate, **place: where(table, **{**ICE, "grains": grains, "strainRate": rate, **place})
     over = mean("over")
     cubic, agreement = ((2.8, 3.2), "3: to 0.2"), ((0.69, 1.44), "1: to 13 % in φ")
-    own = fitted if len(fitted) else bins
-    yield K13("n of P ∝ φⁿ, 16,384 grains", estimate(power, ice(own, 16_384, 3e-7)), *cubic, "3.1")
-    yield K13("P over eq 25 (n = 3), 16,384 grains", estimate(level, ice(own, 16_384, 3e-7)), *agreement, "3.1")
+    yield K13("n of P ∝ φⁿ, 16,384 grains", estimate(power, ice(fitted, 16_384, 3e-7)), *cubic, "3.1")
+    yield K13("P over eq 25 (n = 3), 16,384 grains", estimate(level, ice(fitted, 16_384, 3e-7)), *agreement, "3.1")
     for k, rate, source in ((-8, 3e-7, "3.1"), (-12, 3e-7, "3.1"), (-19, 3e-7, "3.1"), (-23, 1e-7, "5")):
         filling = 10.0 ** (k / 8.0)
         found = estimate(over, ice(bins, 16_384, rate, filling=filling))
         yield K13(f"P over eq 25 at φ = {filling:.4g}, 16,384 grains, C_v = {rate:g}", found, *agreement, source)
-    yield K13("n of P ∝ φⁿ, 1,024 grains", estimate(power, ice(own, 1024, 3e-7)), *cubic, "3.3")
+    yield K13("n of P ∝ φⁿ, 1,024 grains", estimate(power, ice(fitted, 1024, 3e-7)), *cubic, "3.3")
     for grains in (1024, 4096):
-        found = estimate(level, ice(own, grains, 3e-7))
+        found = estimate(level, ice(fitted, grains, 3e-7))
         yield K13(f"P over eq 25 (n = 3), {grains:,} grains", found, *agreement, "3.3")
-    few, slow = partial(ice, own, 1024, 1e-6), ice(own, 1024, 3e-7)
-    yield K13("P, C_v = 1e-5 over 3e-7, 1,024 grains", change(ice(own, 1024, 1e-5), slow), *agreement, "5")
-    yield K13("P, 1,024 over 16,384 grains", change(slow, ice(own, 16_384, 3e-7)), *agreement, "3.3, 5")
+    few, slow = partial(ice, fitted, 1024, 1e-6), ice(fitted, 1024, 3e-7)
+    yield K13("P, C_v = 1e-5 over 3e-7, 1,024 grains", change(ice(fitted, 1024, 1e-5), slow), *agreement, "5")
+    yield K13("P, 1,024 over 16,384 grains", change(slow, ice(fitted, 16_384, 3e-7)), *agreement, "3.3, 5")
     damped = change(few(linearDamping=0.1), few())
     yield Row("P, damping k_n = 0.1 over 0.01, 1,024 grains", damped, *agreement, "3.4, 5", runs=1)
     for rolling, source in ((2, "5"), (4, "3.5")):

@@ -50,11 +50,9 @@ def _packings(run, row):
 def zones_that_meet(position, aggregate, radius, grain_radius):
     """Filling of the two zones that meet over that of the aggregates, mean of the two: positions (N,3) [m] before the
     aggregates, (N,) 0 or 1, touch; radius of an aggregate and of a grain [m]."""
-    found = []
-    for number, side in ((0, 1.0), (1, -1.0)):
-        centre = np.array([-side * (radius + grain_radius), 0.0, 0.0])
-        found.append(zone_filling(position[aggregate == number], centre, radius, side))
-    return float(np.mean(found))
+    centre = lambda side: np.array([-side * (radius + grain_radius), 0.0, 0.0])
+    of = lambda number, side: zone_filling(position[aggregate == number], centre(side), radius, side)
+    return 0.5 * (of(0, 1.0) + of(1, -1.0))
 
 
 _duration = lambda run: float(run.parameters.get("duration") or run.history["time"][-1])
@@ -107,13 +105,11 @@ def once(runs):
     return rows.drop_duplicates(["pair", "velocity"], keep="last").sort_index()
 
 
-# Andrews's spheres in place of aggregates (A24 sections 4.2 and 4.3): d_max = delta_max(v, R*) - 2 delta_offset,
-# t_max = tau_max(v, R*) + 2 (r - delta_offset)/v, R* = (R + delta_offset)/2. Lengths in grain radii, times in ns.
-
-
 @dataclass(frozen=True)
 class Aggregates:
-    """Andrews's spheres: sigma_plastic [Pa], 1/E* [1/Pa] (0: rigid-plastic), delta_offset [grain radii], kg/m^3."""
+    """Andrews's spheres in place of aggregates: sigma_plastic [Pa], 1/E* [1/Pa] (0: rigid-plastic), delta_offset [grain
+    radii], density. With R* = (R + delta_offset)/2 (A24 sections 4.2, 4.3) d_max = delta_max(v, R*) - 2 delta_offset,
+    t_max = tau_max(v, R*) + 2 (r - delta_offset)/v."""
 
     stress: float
     compliance: float
@@ -261,8 +257,8 @@ def _moduli(plain):
             with_papers = moduli(fit_moduli(r, papers_offset, start))[1]
             return sigma / 1e6, soft * 1e9, poisson_ratio(1.0 / max(soft, 1e-15), bulk), returned, with_papers * 1e9
 
-        start = papers_way(own)[:2] if len(own) else START  # fits without a pair start at that to all
-        sigma, soft, poisson, returned, with_papers = estimates(lambda r: numbers(r, start), own)
+        first = papers_way(own)[:2] if len(own) else START  # fits without a pair start at that to all
+        sigma, soft, poisson, returned, with_papers = estimates(lambda r: numbers(r, first), own)
         yield A24(f"yield stress σ, {what} [MPa]", sigma, stress / 1e6, f"{stress / 1e6:g}", "34, 35")
         printed_as = f"{1e9 / young:.3g} (E* = {young / 1e6:g} MPa)"
         yield A24(f"1/E*, {what} [1/GPa]", soft, 1e9 / young, printed_as, "34, 35")
@@ -278,13 +274,12 @@ def _moduli(plain):
 
 def _velocities(plain):
     """How τ_max goes with velocity and size, with A24's delta_offset, and d_max less that of its curve."""
-    slow = estimate(partial(power_of, column="velocity"), where(plain, filling=0.4, radius=80))
-    yield Row("exponent of τ_max(v), R = 80 r, φ = 0.4", slow, (None, 0), "not rigid-plastic: below 0", "4.2.2", runs=1)
-    slow, words = (
-        estimate(partial(power_of, column="velocity"), where(plain, filling=0.3, radius=40)),
-        "not elastic: above −0.2",
-    )
-    yield Row("exponent of τ_max(v), R = 40 r, φ = 0.3", slow, (-0.2, None), words, "4.2.2", runs=1)
+    for filling, radius, limits, words in (
+        (0.4, 80, (None, 0), "not rigid-plastic: below 0"),
+        (0.3, 40, (-0.2, None), "not elastic: above −0.2"),
+    ):
+        own = estimate(partial(power_of, column="velocity"), where(plain, filling=filling, radius=radius))
+        yield Row(f"exponent of τ_max(v), R = {radius} r, φ = {filling}", own, limits, words, "4.2.2", runs=1)
     for filling in PRINTED:
         for v in (1.0, 10**0.7):
             model, own = printed(filling).at(40.0, v)[0], where(plain, filling=filling, radius=40, velocity=v)
@@ -300,8 +295,8 @@ def _one_collision(large):
     yield A24(f"d_max, {what} [r]", estimate(mean("d"), large), (3.5, 4.5), "≃ 4", "4.1")
     yield A24(f"t_max, {what} [ns]", estimate(mean("t"), large), (250, 350), "≃ 300", "4.1")
     own = where(large, duration=1e-6)
-    together = fraction(own, own.outcome.isin((STICKING, UNDECIDED)))
-    yield A24(f"in one piece at 1 µs, {what}", together, (0.5, None), "“still stick together”", "4.1")
+    in_one = fraction(own, own.outcome.isin((STICKING, UNDECIDED)))
+    yield A24(f"in one piece at 1 µs, {what}", in_one, (0.5, None), "“still stick together”", "4.1")
     parting = estimate(mean(lambda r: r.return_time * 1e9), large)
     yield A24(f"time of fastest parting, {what} [ns]", parting, 344, "≈ 344", "5.3")
 
@@ -344,7 +339,6 @@ STUDY = Study(
     title="Arakawa et al. (2024): collisions of elastoplastic aggregates",
     question="Do equal close-packed aggregates that collide head on compress like elastoplastic spheres (Andrews "
     "1930), and with which yield stress and elastic modulus?",
-    # Head-on collisions of CPE aggregates without bonds, springs held at their limits.
     scene=Scene(
         name="the study of Arakawa et al. (2024)",
         values={"packing": "cpe"} | {name: own for name, own in columns.HEAD_ON_ICE.items() if name not in UNCHANGED},

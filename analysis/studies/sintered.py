@@ -38,7 +38,6 @@ LOST = [f"part_{name}" for name in PARTS if name not in ("kinetic", "elastic")]
 # Times of energies beside the end, in periods of the stretching vibration (S17 prints none for its Fig. 14).
 TIMES, EARLY = (1250, 2500, 5000, 10_000, 20_000), 5000
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
-HALF = 0.5  # of the total mass: what the largest piece must keep for growth (section 5.1)
 AMPLITUDE, EXPONENT = 3.7e-2, 0.97  # S17's fit of broken necks (section 5.3)
 FIVE = ((0.0, 0.2), (0.0, 0.7), (1.0, 0.7), (3.0, 0.7), (10.0, 0.7))  # (V_g, beta) in S17's Fig. 15
 LATER = {"gaps": True, "absent": nan}  # of columns that the first runs do not have
@@ -165,9 +164,9 @@ def _setup(row):
 
 
 def critical_velocity(runs):
-    """Velocity [m/s] at which the mean largest piece falls to a half of the mass."""
+    """Velocity [m/s] at which the mean largest piece falls to a half of the mass: growth below (S17 section 5.1)."""
     largest = runs.groupby("velocity").largest.mean()
-    return threshold(largest.index, largest - HALF)
+    return threshold(largest.index, largest - 0.5)
 
 
 def by_mode(mode):
@@ -247,10 +246,8 @@ def rows(runs):
         less = beside(mean("fragments"), at(runs, rule, 30, 3), at(runs, rule, 30))
         what = f"mass in fragments, V_g = 3 m/s less BCCA, β = 0.7, 30 m/s, {rule}"
         yield S17(what, less, (None, 0), "“fewer”", "5.3")
-    for what, *own in (*_necks(runs), *_energies(runs)):
-        yield S17(what, *own)
-    for what, *own in _space(runs):
-        yield Row(what, *own)
+    yield from (S17(*row) for row in (*_necks(runs), *_energies(runs)))
+    yield from (Row(*row) for row in _space(runs))
 
 
 def _necks(runs):
@@ -320,11 +317,11 @@ def figures(runs):
 
     def paper(axes, panel):
         """S17: 50 m/s unsintered, 20 m/s sintered, where about 0.2 is left at 30 m/s."""
-        axes.plot(20 if "0.7" in panel else 50, HALF, "x", color=PAPER, markersize=10, mew=2, label="S17")
+        axes.plot(20 if "0.7" in panel else 50, 0.5, "x", color=PAPER, markersize=10, mew=2, label="S17")
         if "0.7" in panel:
             axes.plot([30, 30], [0.1, 0.3], color=PAPER, lw=9, alpha=0.2, solid_capstyle="butt")
 
-    look = {"log": "x", "level": HALF, "limits": (0, 1.05), "paper": paper}
+    look = {"log": "x", "level": 0.5, "limits": (0, 1.05), "paper": paper}
     look |= {"x_label": "$v$ [m/s]", "y_label": "mass in the largest piece"}
     figure = curves(own, partial(estimate, mean("largest")), "velocity", "setup", "of", **look)
     yield "held", "Largest piece, springs cut at their limits or held there, beside S17's words (purple).", figure
