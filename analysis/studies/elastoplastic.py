@@ -11,13 +11,12 @@ from ..figures.style import PAPER
 from ..measures.outcome import STICKING, UNDECIDED
 from ..measures.structure import DEPTH, inner_coordination, zone_filling
 from ..runs.collect import Scene
-from ..statistics import smoothed_scatter
 from ..theory import ICE, andrews, pair_constants
 from ..theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
 from . import columns
 from .columns import Column, constant, group, one, parameter
 from .comparison import Row
-from .estimates import Estimate, beside, estimate, estimates, exponent, fraction, mean, where
+from .estimates import Estimate, beside, estimate, estimates, exponent, fraction, mean, smoothed_scatter, where
 from .figures import curves, snapshots
 from .study import GALLERY, Study
 
