@@ -14,8 +14,7 @@ from scipy.spatial import cKDTree
 from ..arrays import numbers, pairs
 
 SCALES, MOST_ORIGINS = 12, 500  # of correlation_dimension
-# Depth below the contact pole and radius about the collision axis of zone_filling(), in radii of the aggregate.
-DEPTH = WIDTH = 0.25
+DEPTH = 0.25  # of the zone of zone_filling(), in radii of the aggregate
 
 
 def grains_within(position, distance, cell_size=None, origins=None):
@@ -132,34 +131,19 @@ def inner_coordination(position, contact_pairs, centre, reach):
     return float(contacts[inside].mean()) if inside.any() else float("nan")
 
 
-def zone_filling(position, centre, radius, side, depth=DEPTH, width=WIDTH):
+def zone_filling(position, centre, radius, side):
     """Number density of grains at the place where an aggregate is hit over that of the whole: 1 in the mean over
     packings.
 
     position (N,3) of the grains of one aggregate, centre (3,) of its sphere, radius of the sphere that holds the
-    centres of its grains; side: +1 or -1, the pole along x at which it meets the other. The zone holds the centres
-    less than depth*radius below the pole and less than width*radius from the axis.
+    centres of its grains; side: +1 or -1, the pole along x at which it meets the other. The zone is a cylinder about
+    the axis below the cap of that sphere, DEPTH radii wide and deep.
     """
     place = np.asarray(position, dtype=float) - centre
-    inside = (side * place[:, 0] > (1.0 - depth) * radius) & (np.hypot(place[:, 1], place[:, 2]) < width * radius)
-    return float(inside.mean() * (4.0 / 3.0 * np.pi * radius**3) / zone_volume(radius, depth, width))
-
-
-def zone_volume(radius, depth=DEPTH, width=WIDTH):
-    """Volume of the zone of zone_filling() in a whole sphere: a cylinder below a cap, in the unit of radius^3.
-
-    >>> f"{zone_volume(1.0, 2.0, 1.0) / (4 * np.pi / 3):.6f}"
-    '1.000000'
-    """
-    cap = 1.0 - np.sqrt(1.0 - width**2)
-    if depth <= cap:
-        return np.pi * depth**2 * (1.0 - depth / 3.0) * radius**3
-    if depth <= 2.0 - cap:
-        rest = np.pi * width**2 * (depth - cap)
-    else:  # both caps, and the whole cylinder between them less what the far one lacks below `depth`
-        far = 2.0 - depth
-        rest = np.pi * width**2 * (2.0 - 2.0 * cap) + np.pi * (cap**2 * (1 - cap / 3) - far**2 * (1 - far / 3))
-    return (rest + np.pi * cap**2 * (1.0 - cap / 3.0)) * radius**3
+    inside = (side * place[:, 0] > (1.0 - DEPTH) * radius) & (np.hypot(place[:, 1], place[:, 2]) < DEPTH * radius)
+    cap = 1.0 - np.sqrt(1.0 - DEPTH**2)
+    volume = (np.pi * DEPTH**2 * (DEPTH - cap) + np.pi * cap**2 * (1.0 - cap / 3.0)) * radius**3
+    return float(inside.mean() * (4.0 / 3.0 * np.pi * radius**3) / volume)
 
 
 def _points(position):
