@@ -43,7 +43,7 @@ class Settings:
     stretch: float = 0.05  # fraction of a run's small steps that measuring a moment may take
     peer_rounds: int = 3
     peer_steps: int = 100  # at most
-    skins: tuple = (0.3, 0.6, 1.0)  # of a peer's lists [grain radii], of which its best counts
+    skins: tuple = (0.3, 0.6, 1.0)  # of a peer's lists [grain radii]: its best counts
     error: tuple = ((0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.4), 3, 20, 130e-9)  # steps [t0], seeds, radius, duration [s]
 
 

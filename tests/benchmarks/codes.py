@@ -57,7 +57,7 @@ def open_code(code, path, together, how):
 
 
 class YadeCode:
-    """A code in YADEs that hold a scene (in_yade.py), each started when it is first asked: one for any number of the
+    """A code in YADEs that hold a scene (in_yade.py), each started when it is first used: one for any number of the
     engine's threads; of YADE's own loops one for each number, which they cannot change."""
 
     def __init__(self, code, path, together):

@@ -48,43 +48,43 @@ def require(results, suite):
 
 
 def checked(question, steps, values, suite):
-    """{difference (relative), order (None: below rounding), said} of a question's values, the longest step first."""
+    """{difference (relative), order (None: below rounding), word} of a question's values, the longest step first."""
     if values is None:
-        return dict(difference=None, order=None, said="not answered")
+        return dict(difference=None, order=None, word="not answered")
     exact = float(question["value"])
     scale = question.get("scale", abs(exact))
     errors = [math.nan if v is None else (v - exact) / scale for v in values]
     if not all(map(math.isfinite, errors)):
-        return dict(difference=math.inf, order=None, said="does not occur")
+        return dict(difference=math.inf, order=None, word="does not occur")
     falls = (steps[-2] / steps[-1]) ** question.get("order", suite["order"])
     limit = errors[-1] + (errors[-1] - errors[-2]) / (falls - 1)
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
-    return dict(difference=abs(limit), order=order, said="agrees" if abs(limit) <= suite["tolerance"] else "differs")
+    return dict(difference=abs(limit), order=order, word="agrees" if abs(limit) <= suite["tolerance"] else "differs")
 
 
 def verdict(case, answer, suite):
-    """{said, difference, order, worst} of a case: of its worst question; answered: how many of how many; questions.
+    """{word, difference, order, worst} of a case: of its worst question; answered: how many of how many; questions.
 
     It agrees only where all is answered but what codes without a ledger can't.
     """
     if answer is None:
-        return dict(said="not run")
+        return dict(word="not run")
     if "not modelled" in answer:
-        return dict(said="not modelled", why=answer["not modelled"])
+        return dict(word="not modelled", why=answer["not modelled"])
     found = {q["name"]: checked(q, answer["steps"], answer["values"].get(q["name"]), suite) for q in case["asked"]}
     known = {name: one for name, one in found.items() if one["difference"] is not None}
     if not known:
-        return dict(said="incomplete", why="nothing is answered")
+        return dict(word="incomplete", why="nothing is answered")
     missing = any(q["measure"]["kind"] != "channel" for q in case["asked"] if q["name"] not in known)
-    wrong = any(one["said"] != "agrees" for one in known.values())
-    said = "differs" if wrong else "incomplete" if missing else "agrees"
+    wrong = any(one["word"] != "agrees" for one in known.values())
+    word = "differs" if wrong else "incomplete" if missing else "agrees"
     worst = max(known, key=lambda name: known[name]["difference"])
     orders = sorted(one["order"] for one in known.values() if one["order"] is not None)
     order = orders[len(orders) // 2] if orders else None
     of_worst = dict(difference=known[worst]["difference"], order=order, worst=worst)
-    return dict(said=said, answered=(len(known), len(found)), questions=found, **of_worst)
+    return dict(word=word, answered=(len(known), len(found)), questions=found, **of_worst)
 
 
 def verdicts(results):
@@ -96,11 +96,11 @@ def verdicts(results):
 
 def in_words(found):
     if "difference" not in found:
-        return found["said"] + (f": {found['why']}" if "why" in found else "")
+        return found["word"] + (f": {found['why']}" if "why" in found else "")
     order = "" if found["order"] is None else f", order {found['order']:.1f}"
     by = "something does not occur" if math.isinf(found["difference"]) else f"{found['difference']:.1e}"
     some = "" if found["answered"][0] == found["answered"][1] else "{} of {} answered; ".format(*found["answered"])
-    return f"{found['said']} ({some}{by}{order}; worst: {found['worst']})"
+    return f"{found['word']} ({some}{by}{order}; worst: {found['worst']})"
 
 
 def in_lines(found, long):
@@ -109,13 +109,13 @@ def in_lines(found, long):
         for question, its in one.get("questions", {}).items() if long else ():
             by = "" if its["difference"] is None else f" {its['difference']:.1e}"
             order = "" if its["order"] is None else f", order {its['order']:.2f}"
-            yield f"    {its['said']:16}{question}{by}{order}"
+            yield f"    {its['word']:16}{question}{by}{order}"
 
 
 def in_a_table(found):
     """Lines of Markdown, case against code: agrees, or by how much it differs. found: {code: {case: verdict}}"""
     size = lambda x: f"{x:.0e}" if math.isfinite(x) else "does not occur"
-    cell = lambda one: size(one["difference"]) if one["said"] == "differs" else one["said"]
+    cell = lambda one: size(one["difference"]) if one["word"] == "differs" else one["word"]
     rows = [["case", *found], ["---"] * (1 + len(found))]
     rows += [[case, *(cell(its[case]) for its in found.values())] for case in next(iter(found.values()))]
     return ["| " + " | ".join(row) + " |" for row in rows]
@@ -145,7 +145,7 @@ def p_value(sample, reference):
 
 
 def compared(results):
-    """{distribution: {said, p, mean, reference}} of a file of samples."""
+    """{distribution: {word, p, mean, reference}} of a file of samples."""
     suite = json.loads((HERE / "ensembles.json").read_text())
     if results.get("suite") != suite["version"]:
         refuse(f"samples are of version {results.get('suite')}", suite["version"])
@@ -158,7 +158,7 @@ def compared(results):
         if len(values) < least or not all(map(math.isfinite, values)):
             refuse(f"{name}: {len(values)} runs", f"{least} or more, which can differ, all finite numbers")
         p = p_value(values, given[name])
-        found[name] = dict(said="differs" if p < level else "not told apart", p=p, of=values, reference=given[name])
+        found[name] = dict(word="differs" if p < level else "not told apart", p=p, of=values, reference=given[name])
     return found
 
 
@@ -173,25 +173,29 @@ def read(path):
         found = compared(results) if "samples" in results else verdicts(results)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         sys.exit(f"check.py: {path}: {error!r}: must be a results file (README.md)")
-    if all(one["said"] == "not run" for one in found.values()):
+    if all(one["word"] == "not run" for one in found.values()):
         sys.exit(f"check.py: {path}: no case of these; must have one or more")
     return found, "samples" not in results
 
 
-def main(*words):
-    long, of_cases, said = "--long" in words, {}, []
-    for path in (word for word in words if word != "--long"):
+def main(*arguments):
+    long, of_cases, every = "--long" in arguments, {}, []
+    for path in (argument for argument in arguments if argument != "--long"):
         found, cases = read(path)
-        said += [one["said"] for one in found.values()]
+        every += [one["word"] for one in found.values()]
         if cases:
             of_cases[Path(path).stem] = found
-        for name, one in {} if cases else found.items():
+            continue
+        for name, one in found.items():
             means = f"mean {of_mean(one['of'])}, reference {of_mean(one['reference'])}"
-            print(f"{name:22}{one['said']} (p {one['p']:.4f}; {means})")
-    several = len(of_cases) > 1
-    for line in in_a_table(of_cases) if several else [x for its in of_cases.values() for x in in_lines(its, long)]:
+            print(f"{name:22}{one['word']} (p {one['p']:.4f}; {means})")
+    if len(of_cases) > 1:
+        lines = in_a_table(of_cases)
+    else:
+        lines = [line for found in of_cases.values() for line in in_lines(found, long)]
+    for line in lines:
         print(line)
-    return 1 if {"differs", "incomplete"} & {*said} else 0
+    return 1 if {"differs", "incomplete"} & {*every} else 0
 
 
 if __name__ == "__main__":

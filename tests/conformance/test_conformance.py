@@ -32,7 +32,7 @@ def test_this_law_agrees(code):
     yade_codes.CODE = code
     for name in SAMPLE.split():
         found = check.verdict(CASES[name], answer(CASES[name], yade_codes.series_of, LEVELS), SUITE)
-        assert found["said"] == "agrees", (name, check.in_words(found))
+        assert found["word"] == "agrees", (name, check.in_words(found))
 
 
 def results(case="sliding"):
@@ -42,16 +42,16 @@ def results(case="sliding"):
 
 
 def test_a_case_agrees_only_where_all_is_answered_but_the_ledger():
-    said = lambda given: check.verdicts(given)["collision"]["said"]
+    word = lambda given: check.verdicts(given)["collision"]["word"]
     given = results("collision")
     values = given["cases"]["collision"]["values"]
-    assert said(given) == "agrees"
+    assert word(given) == "agrees"
     values["energy lost as it breaks"] = None
-    assert said(given) == "agrees"
+    assert word(given) == "agrees"
     del values["time of the break"]
-    assert said(given) == "incomplete"
+    assert word(given) == "incomplete"
     values["greatest overlap"][-1] *= 1 + 2e-6
-    assert said(given) == "differs"
+    assert word(given) == "differs"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Runs the commands of README.md and docs/ as written, in a folder of its own: called by make test-docs.
 
-A command that has said nothing wrong after LONGEST seconds has started, and is ended. Left out are those with a name in
+A command that runs on after LONGEST seconds has started, and is ended. Left out are those with a name in
 capitals, which stands for the reader's own.
 """
 

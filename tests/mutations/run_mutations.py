@@ -54,8 +54,8 @@ class Result:
 def copy_of_the_tree(compiles):
     """Path of a copy of the work tree, with what make built, in a temporary folder."""
     with tempfile.TemporaryDirectory(prefix="mutation-") as top:
-        asked = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-        listed = subprocess.run(asked, cwd=TOP, capture_output=True, check=True, text=True).stdout.split("\0")
+        command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        listed = subprocess.run(command, cwd=TOP, capture_output=True, check=True, text=True).stdout.split("\0")
         for name in (name for name in listed if name and (TOP / name).exists()):
             (Path(top) / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(TOP / name, Path(top) / name)
