@@ -16,7 +16,7 @@ ROOMS = [str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "ben
 sys.path.insert(0, str(TOP))
 sys.path += ROOMS
 
-from approx import without_absolute_tolerance
+from yade_call import without_absolute_tolerance
 from yade_server import YadeServer
 
 without_absolute_tolerance()
@@ -31,16 +31,16 @@ TO_CALL = f"import sys\nsys.path[:0] = {[str(TOP), *ROOMS]}\nfrom yade_call impo
 
 
 def call_in_yade(path, name, arguments, threads=1, timeout=300):
-    """What the function `name` of a Python file returns inside YADE (headless), called with a dict of arguments; both as pickle
-    can hold them. With one thread it runs in a process forked from a YADE that has started; with more in a YADE of its own.
-    Raises YadeFailed for what it raises, and when YADE ends otherwise."""
+    """What the function `name` of a Python file returns inside YADE (headless), called with a dict of arguments; both
+    as pickle can hold them. With one thread it runs in a process forked from a YADE that has started; with more in a
+    YADE of its own. Raises YadeFailed for what it raises, and when YADE ends otherwise."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "script.py").write_text(TO_CALL)
         (folder / "call").write_bytes(pickle.dumps((str(path), name, arguments)))
         status = _run(folder, threads, timeout)
         if status or not (folder / "answer").exists():
-            raise YadeFailed("\n".join([f"status {status}", *_said(folder)]))
+            raise YadeFailed("\n".join([f"status {status}", *_printed(folder)]))
         return pickle.loads((folder / "answer").read_bytes())
 
 
@@ -61,7 +61,7 @@ def _run(folder, threads, timeout):
         return subprocess.run(command, stdout=out, stderr=err, timeout=timeout, cwd=folder).returncode
 
 
-def _said(folder):
+def _printed(folder):
     return [(folder / name).read_text()[-3000:] for name in ("stdout", "stderr")]
 
 

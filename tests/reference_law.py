@@ -1,10 +1,12 @@
 """The contact law of contact_law/MODEL.md once more, in plain Python, to be read beside the papers.
 
-It shares nothing with the plugin, has its constants from analysis.theory, and is slow. tests/equivalence/test_reference_law.py
-holds functors and engine to it. A22, A24: Arakawa et al. 2022, 2024; K13: Kataoka et al. 2013; S17: Sirono & Ueno 2017; W07: Wada et al. 2007.
-SI units; vectors are arrays (3,). Of a contact: grains 1 and 2, n the unit vector from 2 to 1, delta the overlap.
+It shares nothing with the plugin, has its constants from analysis.theory, and is slow.
+tests/equivalence/test_reference_law.py holds functors and engine to it. A22, A24: Arakawa et al. 2022, 2024; K13:
+Kataoka et al. 2013; S17: Sirono & Ueno 2017; W07: Wada et al. 2007. SI units; vectors are arrays (3,). Of a contact:
+grains 1 and 2, n the unit vector from 2 to 1, delta the overlap.
 """
 
+from dataclasses import replace
 from math import pi, sqrt
 from types import SimpleNamespace
 
@@ -29,21 +31,14 @@ def turned(v, angle):
     return v + np.sin(size) * cross(axis, v) + 2 * np.sin(size / 2) ** 2 * cross(axis, cross(axis, v))
 
 
-# ---- constants and normal motion, from analysis.theory; m: young, poisson, density, surfaceEnergy, ... ----
-
-
-def material(m, density=1.0):
-    """m as the theory has it, with its density times a factor."""
-    return theory.Material(
-        m.young, m.poisson, density * m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime
-    )
+# ---- constants and normal motion, from analysis.theory; m1, m2: theory.Material ----
 
 
 def pair(m1, r1, m2, r2, damping, beta, sliding_factor=1):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
     s = theory.shrunk_radius(beta)
-    grains = material(m1, s**-3), s * r1, material(m2, s**-3), s * r2
-    c = theory.pair_constants(*grains, damping, sliding_factor)
+    m1, m2 = (replace(m, density=m.density / s**3) for m in (m1, m2))
+    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor)
     of_springs = dict(r1=s * r1, r2=s * r2, R=c.reduced_radius)
     of_springs |= dict(ks=c.sliding_stiffness, kr=c.rolling_stiffness, kt=c.twisting_stiffness)
     limits = dict(zeta_crit=c.critical_sliding, xi_crit=c.critical_rolling, phi_crit=c.critical_twisting)
@@ -54,7 +49,7 @@ def pair(m1, r1, m2, r2, damping, beta, sliding_factor=1):
 
 def bond(m1, r1, m2, r2, beta):
     """Constants of a sintered bond of grains with radii r1, r2 before sintering."""
-    b = theory.bond_constants(material(m1), r1, beta, material(m2), r2)
+    b = theory.bond_constants(m1, r1, beta, m2, r2)
     of_springs = dict(r1=r1, r2=r2, R=r1 * r2 / (r1 + r2))
     of_springs |= dict(ks=b.sliding_stiffness, kr=b.rolling_stiffness, kt=b.twisting_stiffness)
     return SimpleNamespace(**of_springs, kn=b.normal_stiffness, breaking=b.breaking_energy)
@@ -78,7 +73,7 @@ def missed_at_pull_off(g, terms=8):
     return total - x[-1] ** -0.5 / 24 + x[-1] ** -2.5 / 1920
 
 
-# ---- springs (W07, A24 appendix A), of a contact or a bond; p: a contact now, with its pointers n1 and n2 and twist phi ----
+# ---- springs (W07, A24 appendix A), of a contact or a bond; p: a contact now, with pointers n1, n2 and twist phi ----
 
 
 def displacements(c, p):
@@ -105,7 +100,8 @@ def move(p, displacement, limit, radius1, radius2):
 
 
 def return_to_limits(c, p, before, dt, lost):
-    """Displacements beyond their limits return to them: twisting, then sliding, then rolling. Books what that dissipates."""
+    """Displacements beyond their limits return to them: twisting, then sliding, then rolling. Books what that
+    dissipates."""
     phi, p.phi = p.phi, min(max(p.phi, -c.phi_crit), c.phi_crit)
     lost["twistingDissipation"] += c.kt / 2 * (before.phi + p.phi) * (phi - p.phi)
     trial1, trial2, (zeta, xi) = p.n1, p.n2, displacements(c, p)
@@ -131,8 +127,8 @@ def return_to_limits(c, p, before, dt, lost):
 
 
 def passage(then, now, limit):
-    """A displacement that grows evenly from one to the other while its spring is cut at the limit, again and again: (that of the last
-    spring, the mean over the way)."""
+    """A displacement that grows evenly from one to the other while its spring is cut at the limit, again and again:
+    (that of the last spring, the mean over the way)."""
     way, x, left, mean = now - then, then, 1.0, 0.0
     while True:
         squared, along, missing = way @ way, x @ way, limit**2 - x @ x
@@ -159,8 +155,9 @@ def with_displacement(c, p, mode, wanted):
 
 
 def cut_at_limits(c, p, old, dt, time):
-    """Cuts the springs beyond their limits. time: fraction of the step for which the contact has existed. Returns by mode: displacement a
-    step ago and as it was carried here, whether it was cut, and the contact whose spring acts before now, with the fraction for which it does."""
+    """Cuts the springs beyond their limits. time: fraction of the step for which the contact has existed. Returns by
+    mode: displacement a step ago and as it was carried here, whether it was cut, and the contact whose spring acts
+    before now, with the fraction for which it does."""
     turn = dt * (cross(p.n, p.v) / p.distance + (p.w1 + p.w2) @ p.n / 2 * p.n)
     then = {"sliding": turned(old.zeta, turn), "rolling": turned(old.xi, turn), "twisting": np.array([old.phi])}
     limit, trial, ways = {"sliding": c.zeta_crit, "rolling": c.xi_crit, "twisting": c.phi_crit}, by_mode(c, p), {}
@@ -185,14 +182,14 @@ STIFFNESS = {"sliding": "ks", "rolling": "kr", "twisting": "kt"}
 
 
 class Scene:
-    """N grains in open space under a leapfrog. materials: a dict each, with the attributes of JKRMat; radii: (N,); x, v, w: (N, 3).
-    half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused engine).
-    `energies`: by channel, at the present positions."""
+    """N grains in open space under a leapfrog. materials: the fields of theory.Material each; radii: (N,); x,
+    v, w: (N, 3). half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused
+    engine). `energies`: by channel, at the present positions."""
 
     def __init__(
         self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False, limit="held", sliding_factor=1.0
     ):
-        self.materials, self.radii = [SimpleNamespace(**m) for m in materials], np.array(radii)
+        self.materials, self.radii = [theory.Material(*m) for m in materials], np.array(radii)
         self.x, self.v, self.w, self.dt = np.array(x), np.array(v), np.array(w), dt
         self.mass = 4 / 3 * pi * np.array([m.density for m in self.materials])[:, None] * self.radii[:, None] ** 3
         self.inertia = 0.4 * self.mass * self.radii[:, None] ** 2
@@ -285,8 +282,9 @@ class Scene:
             self.held = {mode: self.held[mode] + energy for mode, energy in zip(MODES, p.held)}
 
     def kick(self, dt, before, after=()):
-        """Kicks over dt at this instant, (contact, normal force, fraction of the springs' forces) each; the work of those that belong `before` it is part of
-        the kinetic energy now. Returns the sum of J^2/2m of what belongs after less before, torques included, and that work."""
+        """Kicks over dt at this instant, (contact, normal force, fraction of the springs' forces) each; the work of
+        those that belong `before` it is part of the kinetic energy now. Returns the sum of J^2/2m of what belongs after
+        less before, torques included, and that work."""
         p, squares, works = before[0][0], [], []
         for kicks in (before, after):
             force, torque1, torque2, square, work = self.impulse(dt, kicks) if kicks else (*3 * [np.zeros(3)], 0.0, 0.0)

@@ -48,7 +48,8 @@ def engines_around(loop):
 
 
 def new_scene(dt, mover="functors", **options):
-    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own; dt: the small step."""
+    """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own; dt: the small
+    step."""
     O.reset()
     O.dt, O.trackEnergy = dt * options.get("subSteps", 1), True
     if mover == "functors":
@@ -104,7 +105,8 @@ def steps(number):
 
 
 def largest_change(looks, *works, every=1, step=lambda: O.step()):
-    """How far the sum of all channels and these works gets from what it is now [J]: looked at so often, each time after `every` calls of step()."""
+    """How far the sum of all channels and these works gets from what it is now [J]: looked at so often, each time after
+    `every` calls of step()."""
     first = total_energy(*works)
     largest = 0
     for _ in range(looks):
@@ -173,7 +175,8 @@ def engine_of_sub_steps(number, **options):
 
 
 def set_free(packing, material):
-    """contact_law.snapshot() of a packing's grains at their start and 2000 t0 later, and their largest kinetic energy meanwhile [J]."""
+    """contact_law.snapshot() of a packing's grains at their start and 2000 t0 later, and their largest kinetic energy
+    meanwhile [J]."""
     new_scene(0.1 * constants(material, packing.radius.min())["timeUnit"])
     for x, r in zip(packing.position, packing.radius):
         grain(x, r, material)
@@ -237,8 +240,9 @@ def record(n, *works, before=lambda k: None):
 
 
 def compared(functors, engine, channels=None):
-    """Differences of record(n + 1) of the functors, whose energies belong to the positions before the step, and record(n) of the engine:
-    ((n,) of positions [1e-7 m], largest ones of energies by channel, over the kinetic energy at the start)."""
+    """Differences of record(n + 1) of the functors, whose energies belong to the positions before the step, and
+    record(n) of the engine: ((n,) of positions [1e-7 m], largest ones of energies by channel, over the kinetic energy
+    at the start)."""
     (tracks, sums), (others, other_sums) = functors, engine
     n, scale = len(others), sums[0]["kinetic"]
     of_energies = {

@@ -1,9 +1,9 @@
 """One YADE that has started, and runs scripts in processes forked from it: a start takes longer than most scripts.
 
-In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS MODULE...` imports the modules, reads one request a line from the file descriptor
-REQUESTS ({"script", "folder", "timeout", "arguments"}: a Python file, where to run it, seconds or 0, what follows the file in sys.argv),
-runs it as YADE's own main script would be, and writes a line to ANSWERS: its status as subprocess has it, a signal's number negative.
-What the script prints is in FOLDER/stdout and FOLDER/stderr.
+In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS MODULE...` imports the modules, reads one request a line from the
+file descriptor REQUESTS ({"script", "folder", "timeout", "arguments"}: a Python file, where to run it, seconds or 0,
+what follows the file in sys.argv), runs it as YADE's own main script would be, and writes a line to ANSWERS: its status
+as subprocess has it, a signal's number negative. What the script prints is in FOLDER/stdout and FOLDER/stderr.
 """
 
 import importlib
@@ -20,7 +20,8 @@ with suppress(ImportError):  # what many tests import: once, before they are for
 
 
 class YadeServer:
-    """A YADE that is started when it is first asked, with modules that scripts need, in this environment (None: of this process)."""
+    """A YADE that is started when it is first asked, with modules that scripts need, in this environment (None: of this
+    process)."""
 
     def __init__(self, modules=(), environment=None):
         self.modules, self.environment = modules, environment

@@ -22,8 +22,8 @@ namespace {
 		ContactBefore before;
 		before.touching = true;
 		before.overlap = rest - apart;
-		before.sliding = sliding::displacement(h.pointers, c.radius1, c.radius2, (1 / apart) * then);
-		before.rolling = rolling::displacement(h.pointers, c.reducedRadius);
+		before.sliding = SlidingSpring::displacement(c, h.pointers, (1 / apart) * then);
+		before.rolling = RollingSpring::displacement(c, h.pointers);
 		before.twist = h.twist;
 		return before;
 	}

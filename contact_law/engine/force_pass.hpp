@@ -139,8 +139,8 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		                 then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
 		const Pointers<Pack> old { load(before.n1, at), load(before.n2, at) };
 		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of contact_events.cpp
-		const Displacements<Pack> aStepAgo { sliding::displacement(old, c.radius1, c.radius2, inverseRoot(dot(then, then)) * then),
-			rolling::displacement(old, c.reducedRadius), Pack::load(before.twist + at) };
+		const Displacements<Pack> aStepAgo { SlidingSpring::displacement(c, old, inverseRoot(dot(then, then)) * then),
+			RollingSpring::displacement(c, old), Pack::load(before.twist + at) };
 		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
 		returnToLimits<mechanisms>(c, g.normal, aStepAgo,
 		        { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at),

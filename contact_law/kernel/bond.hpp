@@ -103,8 +103,8 @@ template <class T> inline ContactForces<T> bondForces(const BondConstants<T>& b,
 template <class T>
 inline StoredEnergy<T> bondEnergy(const BondConstants<T>& b, const ContactGeometry<T>& g, const ContactForces<T>& f, const T& twist)
 {
-	return { T(0.5) * b.normalStiffness * g.overlap * g.overlap, sliding::energy(b, f.slidingDisplacement),
-		rolling::energy(b, f.rollingDisplacement), twisting::energy(b, twist) };
+	return { T(0.5) * b.normalStiffness * g.overlap * g.overlap, springEnergy<SlidingSpring>(b, f.slidingDisplacement),
+		springEnergy<RollingSpring>(b, f.rollingDisplacement), twisting::energy(b, twist) };
 }
 
 // ---- breaking ----

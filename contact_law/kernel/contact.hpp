@@ -25,8 +25,8 @@ inline void tangentialForces(const Constants& c, const ContactGeometry<T>& g, co
 {
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
 		T across = T(0.); // factor of n1 x n2 in the torques, which sliding and rolling share
-		if constexpr (bool(mechanisms & Rolling)) across = rolling::addForces(c, h.pointers, f);
-		if constexpr (bool(mechanisms & Sliding)) across = across + sliding::addForces(c, g, h.pointers, f);
+		if constexpr (bool(mechanisms & Rolling)) across = RollingSpring::addForces(c, h.pointers, f);
+		if constexpr (bool(mechanisms & Sliding)) across = across + SlidingSpring::addForces(c, g, h.pointers, f);
 		const Vec3<T> common = across * cross(h.pointers.n1, h.pointers.n2);
 		f.torque1 = f.torque1 + common;
 		f.torque2 = f.torque2 - common;
@@ -48,8 +48,8 @@ inline ContactForces<T> contactForces(const PairConstants<T>& c, const ContactGe
 template <class T>
 inline StoredEnergy<T> storedEnergy(unsigned mechanisms, const PairConstants<T>& c, const ContactForces<T>& f, const T& twist)
 {
-	return { normal::energy(c, f.contactRadiusRoot), sliding::energy(c, f.slidingDisplacement),
-		rolling::energy(c, f.rollingDisplacement), mechanisms & Twisting ? twisting::energy(c, twist) : T(0.) };
+	return { normal::energy(c, f.contactRadiusRoot), springEnergy<SlidingSpring>(c, f.slidingDisplacement),
+		springEnergy<RollingSpring>(c, f.rollingDisplacement), mechanisms & Twisting ? twisting::energy(c, twist) : T(0.) };
 }
 
 /* What disconnection takes of a contact whose grains a script has moved apart: pull-off's energy, and what its springs held before. Of each no more than at its limit:
@@ -77,14 +77,13 @@ void startSprings(unsigned mechanisms, unsigned started, const PairConstants<dou
 		const Vec3<double> w = v - dot(v, normal) * normal;
 		return dot(w, w) > 0 ? std::sqrt(dot(v, v) / dot(w, w)) * w : none;
 	};
-	const double r1 = c.radius1, r2 = c.radius2;
 	if (started & Twisting) h.twist = before.twist = 0;
 	if (!(started & (Sliding | Rolling))) return;
 	const unsigned there = mechanisms & ~started;
-	const Vec3<double> slid = there & Sliding ? sliding::displacement(h.pointers, r1, r2, normal) : none;
-	const Vec3<double> rolled = there & Rolling ? across(rolling::displacement(h.pointers, c.reducedRadius)) : none;
+	const Vec3<double> slid = there & Sliding ? SlidingSpring::displacement(c, h.pointers, normal) : none;
+	const Vec3<double> rolled = there & Rolling ? across(RollingSpring::displacement(c, h.pointers)) : none;
 	startPointers(normal, h.pointers);
-	h.pointers = rolling::displaced(sliding::displaced(h.pointers, r1, r2, slid), r1, r2, rolled);
+	h.pointers = displaced<RollingSpring>(c, displaced<SlidingSpring>(c, h.pointers, slid), rolled);
 	if (started & Sliding) before.sliding = none;
 	if (started & Rolling) before.rolling = none;
 }

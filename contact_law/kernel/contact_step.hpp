@@ -130,7 +130,7 @@ inline ContactStepResult contactStepAt(const PairConstants<double>& c, LimitRule
         const ContactGeometry<double>& g, const ContactBefore& before, History& history)
 {
 	if (!before.touching) {
-		if (g.overlap < 0) return {}; // grains that sintering has shrunk are seen before they touch
+		if (g.overlap < 0) return {}; // the search finds grains that sintering has shrunk before they touch
 		return newContact<mechanisms>(c, limit, m, g, before, history);
 	}
 	if constexpr (bool(mechanisms & Twisting))

@@ -77,33 +77,6 @@ namespace cut {
 		}
 	};
 
-	struct SlidingSpring {
-		static constexpr unsigned mode = Sliding;
-		static double stiffness(const PairConstants<double>& c) { return c.slidingStiffness; }
-		static double limit(const PairConstants<double>& c) { return c.criticalSliding; }
-		template <class SomePointers> static Vec3<double> displacement(const Step& s, const SomePointers& p)
-		{
-			return sliding::displacement(p, s.constants.radius1, s.constants.radius2, s.geometry.normal);
-		}
-		template <class SomePointers> static SomePointers displaced(const Step& s, const SomePointers& p, const Vec3<double>& by)
-		{
-			return sliding::displaced(p, s.constants.radius1, s.constants.radius2, by);
-		}
-	};
-	struct RollingSpring {
-		static constexpr unsigned mode = Rolling;
-		static double stiffness(const PairConstants<double>& c) { return c.rollingStiffness; }
-		static double limit(const PairConstants<double>& c) { return c.criticalRolling; }
-		template <class SomePointers> static Vec3<double> displacement(const Step& s, const SomePointers& p)
-		{
-			return rolling::displacement(p, s.constants.reducedRadius);
-		}
-		template <class SomePointers> static SomePointers displaced(const Step& s, const SomePointers& p, const Vec3<double>& by)
-		{
-			return rolling::displaced(p, s.constants.radius1, s.constants.radius2, by);
-		}
-	};
-
 	// Sliding or rolling in one step: its spring is cut by cutIn(), which moves the pointers; book() is for all pointers moved.
 	template <class Spring> struct InStep {
 		const Step& step;
@@ -114,28 +87,29 @@ namespace cut {
 		InStep(const Step& s, const Vec3<double>& before, const SomePointers& p)
 		        : step(s)
 		        , aStepAgo(s.carriedAlong(before))
-		        , trial(Spring::displacement(s, p))
+		        , trial(Spring::displacement(s.constants, p, s.geometry.normal))
 		{
 		}
-		bool beyondLimit() const { return dot(trial, trial) > Spring::limit(step.constants) * Spring::limit(step.constants); }
+		bool beyondLimit() const { return contact_law::beyondLimit<Spring>(step.constants, trial); }
 		template <class SomePointers> void cutIn(SomePointers& p)
 		{
 			passed = passage(aStepAgo, trial, Spring::limit(step.constants));
-			p = Spring::displaced(step, p, passed.now - Spring::displacement(step, p));
+			p = displaced<Spring>(
+			        step.constants, p, passed.now - Spring::displacement(step.constants, p, step.geometry.normal));
 		}
 		// What it took of the motion; `added`: what its kick before this instant is beyond the ordinary one.
 		template <class History> double book(const History& h, events::Kicks& added) const
 		{
 			const auto& p = h.pointers;
-			const Vec3<double> now = Spring::displacement(step, p);
-			events::Kicks before = step.kicksOf<Spring::mode>(h, step.springsBefore);
+			const Vec3<double> now = Spring::displacement(step.constants, p, step.geometry.normal);
+			events::Kicks before = step.kicksOf<Spring::mechanism>(h, step.springsBefore);
 			double unequal = 0;
 			if (passed.any) {
 				added.add(before, -1);
-				before = step.kicksOf<Spring::mode>(
-				        History { Spring::displaced(step, p, step.acting(passed, aStepAgo) - now), 0 }, 1);
+				before = step.kicksOf<Spring::mechanism>(
+				        History { displaced<Spring>(step.constants, p, step.acting(passed, aStepAgo) - now), 0 }, 1);
 				added.add(before);
-				unequal = lostByUnequal(before, step.kicksOf<Spring::mode>(h, 0.5), step.motion);
+				unequal = lostByUnequal(before, step.kicksOf<Spring::mechanism>(h, 0.5), step.motion);
 			}
 			return taken(Spring::stiffness(step.constants), aStepAgo, trial, now, before, step.motion) + unequal;
 		}
@@ -173,7 +147,7 @@ namespace cut {
 		if (!slides && !rolls && !freed) return;
 		if (slides) slide.cutIn(p);
 		if (rolls) roll.cutIn(p);
-		if (freed) p = RollingSpring::displaced(s, p, -RollingSpring::displacement(s, p));
+		if (freed) p = displaced<RollingSpring>(s.constants, p, -RollingSpring::displacement(s.constants, p));
 		result.pointersMoved = true;
 		const double bySliding = mechanisms & Sliding ? slide.book(h, result.added) : 0;
 		const double byRolling = mechanisms & Rolling ? roll.book(h, result.added) : 0;

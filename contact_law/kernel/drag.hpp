@@ -24,7 +24,7 @@ namespace drag {
 
 } // namespace drag
 
-// Dissipated over a step: the mean of the two forces times the way. Only lanes that are `counted` are booked.
+// Dissipated over a step: the mean of the two forces times the way. Only where `counted`.
 template <class T>
 inline void bookDrag(const DragMoment<T>& before, const DragMoment<T>& now, const MaskOf<T>& counted, DissipationOf<T>& lost)
 {

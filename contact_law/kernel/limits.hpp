@@ -31,10 +31,9 @@ inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>&
 {
 	MaskOf<T> beyond = T(1.) < T(0.);
 	if constexpr (bool(mechanisms & Twisting)) beyond = beyond | twisting::beyondLimit(c, h.twist);
-	if constexpr (bool(mechanisms & Sliding)) beyond = beyond | sliding::beyondLimit(c, f.slidingDisplacement);
-	if constexpr (bool(mechanisms & Rolling)) beyond = beyond | rolling::beyondLimit(c, f.rollingDisplacement);
-	if constexpr (rollsFreely(mechanisms))
-		beyond = beyond | rolling::beyondLimit(c, rolling::displacement(h.pointers, c.reducedRadius));
+	if constexpr (bool(mechanisms & Sliding)) beyond = beyond | beyondLimit<SlidingSpring>(c, f.slidingDisplacement);
+	if constexpr (bool(mechanisms & Rolling)) beyond = beyond | beyondLimit<RollingSpring>(c, f.rollingDisplacement);
+	if constexpr (rollsFreely(mechanisms)) beyond = beyond | beyondLimit<RollingSpring>(c, RollingSpring::displacement(c, h.pointers));
 	return beyond;
 }
 
@@ -43,7 +42,7 @@ template <class T> struct Displacements {
 	T twist;
 };
 
-/* Return the displacements of `h` that are beyond their limits to them, and book what that dissipates (of lanes that are `counted`);
+/* Return the displacements of `h` that are beyond their limits to them, and book what that dissipates (where `counted`);
  * true where pointers moved.
  * `before`: the displacements a step ago, `t`: the way from there. Returning one displacement changes the other a little (second order
  * in the pointers' angles):
@@ -60,25 +59,23 @@ inline MaskOf<T> returnToLimits(const PairConstants<T>& c, const Vec3<T>& normal
 		lost.twisting = lost.twisting + choose(counted, twisting::dissipation(c, before.twist, trial, h.twist), none);
 	}
 	const auto trial = p;
-	const Vec3<T> zeta = sliding::displacement(p, c.radius1, c.radius2, normal), xi = rolling::displacement(p, c.reducedRadius);
+	const Vec3<T> zeta = SlidingSpring::displacement(c, p, normal), xi = RollingSpring::displacement(c, p);
 	MaskOf<T> slid = none < none, rolled = none < none;
 	if constexpr (bool(mechanisms & Sliding)) {
-		slid = sliding::beyondLimit(c, zeta);
-		if (anyOf(slid)) p = choose<T>(slid, sliding::returned(p, c.radius1, c.radius2, zeta, c.criticalSliding), p);
+		slid = beyondLimit<SlidingSpring>(c, zeta);
+		if (anyOf(slid)) p = choose<T>(slid, returned<SlidingSpring>(c, p, zeta, c.criticalSliding), p);
 	}
 	if constexpr (bool(mechanisms & (Sliding | Rolling))) {
-		rolled = rolling::beyondLimit(c, xi);
+		rolled = beyondLimit<RollingSpring>(c, xi);
 		const T limit = rollsFreely(mechanisms) ? none : c.criticalRolling;
-		if (anyOf(rolled))
-			p = choose<T>(
-			        rolled, rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit), p);
+		if (anyOf(rolled)) p = choose<T>(rolled, returned<RollingSpring>(c, p, RollingSpring::displacement(c, p), limit), p);
 	}
 	const MaskOf<T> pointersMoved = slid | rolled;
 	if (!anyOf(pointersMoved)) return pointersMoved;
 	const auto moved = way(trial, p);
 	T bySliding = none, byRolling = none;
-	if constexpr (bool(mechanisms & Sliding)) bySliding = sliding::dissipation(c, normal, before.sliding, zeta, p, moved, t);
-	if constexpr (bool(mechanisms & Rolling)) byRolling = rolling::dissipation(c, before.rolling, xi, p, moved, t);
+	if constexpr (bool(mechanisms & Sliding)) bySliding = slipDissipation<SlidingSpring>(c, normal, before.sliding, zeta, p, moved, t);
+	if constexpr (bool(mechanisms & Rolling)) byRolling = slipDissipation<RollingSpring>(c, normal, before.rolling, xi, p, moved, t);
 	const T both = bySliding + byRolling;
 	if constexpr (rollsFreely(mechanisms)) rolled = none < none;
 	lost.sliding = lost.sliding + choose(counted, choose(rolled, choose(slid, bySliding, none), both), none);

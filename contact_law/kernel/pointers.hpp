@@ -1,7 +1,8 @@
 // What sliding and rolling share: contact pointers that turn with the grains and are moved when a displacement is returned to its limit
-// (Wada et al. 2007).
+// (Wada et al. 2007), and what follows for both from their stiffness, limit, displacement, its rate, and how the pointers are moved.
 #pragma once
 #include "contact_state.hpp"
+#include "pair_constants.hpp"
 
 namespace contact_law {
 
@@ -51,14 +52,43 @@ template <class T> inline Vec3<T> normalRate(const Vec3<T>& normal, const T& inv
 	return inverseDistance * (velocity - dot(velocity, normal) * normal);
 }
 
-/* The energy that a slip dissipates in one step of a kick-drift-kick integrator. The kicks use the forces before the step (displacement
- * `before`) and after the return to the limit (`after`), so that the motion loses k/2 (before + after).(trial - before), of which k/2
- * (after^2 - before^2) is stored. The last kick's lever arms are those of the pointers returned: over the step their displacement would
- * have changed by `further` more than the one that was returned, and that too the kick takes. */
-template <class T>
-inline T slipDissipation(const T& stiffness, const Vec3<T>& before, const Vec3<T>& trial, const Vec3<T>& after, const Vec3<T>& further)
+// ---- Spring: SlidingSpring or RollingSpring ----
+
+// U = k D^2/2 (A24 appendix A), of a contact or a bond
+template <class Spring, class Constants, class T> inline T springEnergy(const Constants& c, const Vec3<T>& displacement)
 {
-	return T(0.5) * stiffness * (dot(before + after, trial - after) + dot(after, further));
+	return T(0.5) * Spring::stiffness(c) * dot(displacement, displacement);
+}
+template <class Spring, class T> inline MaskOf<T> beyondLimit(const PairConstants<T>& c, const Vec3<T>& displacement)
+{
+	return Spring::limit(c) * Spring::limit(c) < dot(displacement, displacement);
+}
+// The pointers with their displacement returned to a limit, in its direction.
+template <class Spring, class SomePointers, class T>
+inline SomePointers returned(const PairConstants<T>& c, const SomePointers& p, const Vec3<T>& displacement, const T& limit)
+{
+	const T squared = dot(displacement, displacement), inverse = inverseRoot(squared), excess = squared * inverse - limit;
+	return Spring::moved(c, p, -excess, inverse * displacement);
+}
+// The pointers with a displacement that is another `by`, a vector across the normal.
+template <class Spring, class SomePointers>
+inline SomePointers displaced(const PairConstants<double>& c, const SomePointers& p, const Vec3<double>& by)
+{
+	const double length = std::sqrt(dot(by, by));
+	return length == 0 ? p : Spring::moved(c, p, length, (1 / length) * by);
+}
+
+/* The energy that a slip dissipates in one step of a kick-drift-kick integrator: the return of displacement `trial` to that of pointers
+ * p, `after`, which moved them by `moved`. The kicks use the forces before the step (displacement `before`) and after the return, so that
+ * the motion loses k/2 (before + after).(trial - before), while k/2 (after^2 - before^2) is stored. The last kick's lever arms are those
+ * of the pointers returned: over the step their displacement would have changed by `further` more than the one that was returned, and
+ * that too the kick takes. */
+template <class Spring, class T, class SomePointers>
+inline T slipDissipation(const PairConstants<T>& c, const Vec3<T>& normal, const Vec3<T>& before, const Vec3<T>& trial,
+        const SomePointers& p, const SomePointers& moved, const Turning<T>& t)
+{
+	const Vec3<T> further = t.dt * Spring::rate(c, moved, normal, t), after = Spring::displacement(c, p, normal);
+	return T(0.5) * Spring::stiffness(c) * (dot(before + after, trial - after) + dot(after, further));
 }
 
 /* What a spring gives up when its contact breaks after a fraction of the step: what it stored a step ago (displacement `before`), and

@@ -46,15 +46,17 @@ def test_momentum_and_angular_momentum_to_rounding(kinds, limit):
     ],
 )
 def test_ledger_closes_with_second_order(kinds, drag, limit):
-    """Root mean square over six clusters of the largest closure error over the initial kinetic energy, at two steps a factor 4 apart: second order
-    gives 16, order 3/2 gives 8, first order 4. With drag the last steps before pull-off, where the contact radius shrinks as a square root, leave order 3/2."""
+    """Root mean square over six clusters of the largest closure error over the initial kinetic energy, at two steps a
+    factor 4 apart: second order gives 16, order 3/2 gives 8, first order 4. With drag the last steps before pull-off,
+    where the contact radius shrinks as a square root, leave order 3/2."""
     coarse, fine = (rms(closure(step, kinds, drag, seed, limit) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 5e-4 and coarse / fine > (6 if drag else 9)
 
 
 def test_ledger_of_sustained_slip_has_second_order():
-    """Two touching grains whose spins rub their surfaces against each other slip in every step until they stand: what a kick's lever arms change by
-    when the pointers are returned to the limit is of first order in the step, and a ledger that leaves it out has a ratio of 8 here; second order has 64."""
+    """Two touching grains whose spins rub their surfaces against each other slip in every step until they stand: what a
+    kick's lever arms change by when the pointers are returned to the limit is of first order in the step, and a ledger
+    that leaves it out has a ratio of 8 here; second order has 64."""
 
     def error(step, angle):
         new_scene(step * unit)

@@ -8,7 +8,8 @@ STORED = ("normal", "sliding", "rolling", "twisting")
 
 
 def closure(step, seed, mover):
-    """Largest change of the sum of energies over the first kinetic energy in 8 t0, with sintering at half of the time; what happens there is checked."""
+    """Largest change of the sum of energies over the first kinetic energy in 8 t0, with sintering at half of the time;
+    what happens there is checked."""
     new_scene(step * unit, mover)
     cluster(8, seed, [ice()], [1e-7], speed=4.0, spin=3e7)
     record(2)
@@ -32,14 +33,16 @@ def closure(step, seed, mover):
 
 @pytest.mark.parametrize("mover", ["functors", "fused"])
 def test_ledger_closes_with_second_order_and_momenta_stay(mover):
-    """Root mean square over six clusters of the largest closure error, at steps a factor 4 apart: second order gives 16, first order 4."""
+    """Root mean square over six clusters of the largest closure error, at steps a factor 4 apart: second order gives
+    16, first order 4."""
     coarse, fine = (rms(closure(step, seed, mover) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 5e-3 and coarse / fine > 9
 
 
 @pytest.mark.parametrize("mover", ["functors", "fused"])
 def test_bonds_are_made_as_the_contacts_are_and_new_contacts_are_of_shrunk_grains(mover):
-    """A pair out of equilibrium and turned against each other is at rest after sintering; a third grain then meets it at 2R', not at 2R."""
+    """A pair out of equilibrium and turned against each other is at rest after sintering; a third grain then meets it
+    at 2R', not at 2R."""
 
     def stop():
         for k in (0, 1):

@@ -1,4 +1,5 @@
-"""Momentum and the energy ledger in shrinking periodic cells, with the boundaries' work as a channel of its own; pressure against that work."""
+"""Momentum and the energy ledger in shrinking periodic cells, with the boundaries' work as a channel of its own;
+pressure against that work."""
 
 import pytest
 from scenes import *
@@ -34,8 +35,8 @@ def closure(step, homo, drag, seed):
 
 @pytest.mark.parametrize("homo,drag", [(0, 0.0), (1, 0.0), (2, 0.0), (2, 2e-12)])
 def test_ledger_with_the_boundaries_work_closes_with_second_order(homo, drag):
-    """Root mean square over six scenes, at two steps a factor 4 apart: second order gives 16; with drag the last steps before pull-off leave order 3/2 (8).
-    (In a cell at rest the same scene closes to 6e-4 at the longer step.)"""
+    """Root mean square over six scenes, at two steps a factor 4 apart: second order gives 16; with drag the last steps
+    before pull-off leave order 3/2 (8). (In a cell at rest the same scene closes to 6e-4 at the longer step.)"""
     coarse, fine = (rms(closure(step, homo, drag, seed) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 1e-3 and coarse / fine > (6 if drag else 9)
 
@@ -50,8 +51,9 @@ def test_momentum_to_rounding():
 
 
 def test_virial_pressure_is_the_energy_per_volume_of_an_elastic_compression():
-    """A simple cubic lattice of touching grains, compressed with its mean field so that nothing dissipates: minus boundaryWork per change of volume is the
-    pressure of the contacts (Kataoka et al. 2013, eq. 21, without the kinetic part)."""
+    """A simple cubic lattice of touching grains, compressed with its mean field so that nothing dissipates: minus
+    boundaryWork per change of volume is the pressure of the contacts (Kataoka et al. 2013, eq. 21, without the kinetic
+    part)."""
     apart = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
     new_scene(0.1 * unit)
     periodic_cell(*3 * [4 * apart], velocity_gradient=3 * [-1e-6 / unit])

@@ -17,7 +17,7 @@ def given():
     """What the reference needs: materials, radii, positions, velocities, spins."""
     names = "young poisson density surfaceEnergy criticalRolling viscoelasticTime".split()
     return dict(
-        materials=[{name: getattr(b.mat, name) for name in names} for b in O.bodies],
+        materials=[[getattr(b.mat, name) for name in names] for b in O.bodies],
         radii=[b.shape.radius for b in O.bodies],
         x=positions(),
         v=np.array([b.state.vel for b in O.bodies]),

@@ -82,7 +82,7 @@ class Kernel:
         return SimpleNamespace(force=out[:3], torque1=out[3:6], torque2=out[6:9], energies=out[9:])
 
     def cut_passage(self, before, trial, limit):
-        """(displacement of the last spring, mean displacement of all springs) of one that is cut at a limit on its way."""
+        """(displacement of the last spring, mean displacement of all) of one that is cut at a limit on its way."""
         out = np.empty(6)
         self.call("cutPassage", array(before), array(trial), float(limit), out)
         return out[:3], out[3:]

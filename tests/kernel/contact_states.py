@@ -16,7 +16,8 @@ def states(random, count):
 
 
 def force_and_torques(kernel, energy, x, n1, n2, twist, move, turn):
-    """(force, torque on each grain) by central differences of energy(x, n1, n2, twist) over a displacement and an angle of such sizes."""
+    """(force, torque on each grain) by central differences of energy(x, n1, n2, twist) over a displacement and an angle
+    of such sizes."""
 
     def after(move=0.0, turn1=np.zeros(3), turn2=np.zeros(3)):
         grown = twist + np.dot(turn1 - turn2, unit(x + move))  # dphi = (w1 - w2).n dt

@@ -69,9 +69,9 @@ void returnToLimit(const double* constants, const double* normalVector, double* 
 	const auto c = constantsFrom(constants);
 	Pointers<double> p { vector(pointers), vector(pointers + 3) };
 	if (which == 0)
-		p = sliding::returned(p, c.radius1, c.radius2, sliding::displacement(p, c.radius1, c.radius2, vector(normalVector)), limit);
+		p = returned<SlidingSpring>(c, p, SlidingSpring::displacement(c, p, vector(normalVector)), limit);
 	else
-		p = rolling::returned(p, c.radius1, c.radius2, rolling::displacement(p, c.reducedRadius), limit);
+		p = returned<RollingSpring>(c, p, RollingSpring::displacement(c, p), limit);
 	write(pointers, p.n1);
 	write(pointers, p.n2);
 }

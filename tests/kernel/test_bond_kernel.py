@@ -12,7 +12,8 @@ RADIUS = 1e-7
     "beta,shrunk", [(0.2, 0.9996), (0.3, 0.9977), (0.4, 0.9924), (0.5, 0.9806), (0.6, 0.9575), (0.7, 0.9158)]
 )
 def test_neck_geometry_and_shrunk_radius(kernel, beta, shrunk):
-    """S17 eqs 1, 2; the neck's volume by quadrature of the fillet less the spheres; 0.91 of the radius at 0.7 is in S17's Fig. 4."""
+    """S17 eqs 1, 2; the neck's volume by quadrature of the fillet less the spheres; 0.91 of the radius at 0.7 is in
+    S17's Fig. 4."""
     neck = kernel.neck(beta)
     x = beta**2 / (2 * (1 - beta))
     half = x / (1 + x)

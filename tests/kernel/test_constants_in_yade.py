@@ -1,4 +1,4 @@
-"""JKRWadaConstants and JKRWadaBond: the kernel's lists of constants, with their numbers, their documentation and units."""
+"""JKRWadaConstants and JKRWadaBond: the kernel's lists of constants, with their numbers, documentation and units."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""A displacement whose spring is cut at its limit (S17 section 3.2): the kernel's closed form against many small steps."""
+"""A displacement whose spring is cut at its limit (S17 section 3.2): the kernel's closed form against small steps."""
 
 import numpy as np
 import pytest

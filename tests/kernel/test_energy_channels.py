@@ -25,7 +25,8 @@ def test_plugin_and_run_folders_have_the_same_channels():
 )
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 def test_o_energy_has_the_channels_of_the_scene_and_no_others(scene, work, mover):
-    """All channels of the law in every scene; the works only where the scene has what they are done on. Either way of moving."""
+    """All channels of the law in every scene; the works only where the scene has what they are done on. Either way of
+    moving."""
     new_scene(0.1 * unit, mover)
     if scene == "periodic":
         periodic_cell(1e-6, 1e-6, 1e-6)

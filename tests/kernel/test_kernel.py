@@ -1,4 +1,5 @@
-"""The kernel against the theory of analysis/, closed forms and finite differences: constants, normal law, forces as gradients, limits."""
+"""The kernel against the theory of analysis/, closed forms and finite differences: constants, normal law, forces as
+gradients, limits."""
 
 from fractions import Fraction
 
@@ -52,7 +53,8 @@ def test_sliding_as_s17_prints_it(kernel):
 
 
 def test_normal_law_is_that_of_theory(kernel):
-    """Whose root is exact to the last digits and whose energy is the integral of its force (tests/analysis/test_theory.py)."""
+    """Whose root is exact to the last digits and whose energy is the integral of its force
+    (tests/analysis/test_theory.py)."""
     near = -theory.jkr.PULL_OFF_OVERLAP + np.r_[0, 10.0 ** np.arange(-14.0, -1)]
     overlap = np.concatenate([near, np.linspace(-0.8, 6, 341), [4.0000001, 10, 100, 1e4]])
     u, force, energy = kernel.normal_law(overlap)

@@ -1,4 +1,5 @@
-"""Vibrations of a bonded pair in every mode and of a bonded chain, against closed forms of the springs (S17 eqs 1 to 5), functors and engine."""
+"""Vibrations of a bonded pair in every mode and of a bonded chain, against closed forms of the springs (S17 eqs 1 to
+5), functors and engine."""
 
 from math import pi, sqrt
 
@@ -42,7 +43,8 @@ def stiffnesses(neck):
 
 
 def frequency(signal, interval):
-    """(angular frequency [1/s], largest departure from one sinusoid over its amplitude) of samples at even intervals [s]."""
+    """(angular frequency [1/s], largest departure from one sinusoid over its amplitude) of samples at even intervals
+    [s]."""
     q = np.asarray(signal)
     sides, middle = q[2:] + q[:-2], q[1:-1]
     cosine = (sides @ middle) / (2 * middle @ middle)
@@ -53,7 +55,8 @@ K_STRETCH, K_SLIDE, K_TILT, K_TWIST = stiffnesses(NECK)
 SPEED, SPIN = 1e-3, 1e4  # m/s, 1/s: far below what bends the geometry
 ACROSS = (0, -2 * LEVER * INERTIA / (MASS * RADIUS) * SPIN, 0)
 SLIDES = LEVER**2 / MASS + RADIUS**2 / INERTIA
-# Two free grains, 1 and 2: initial relative velocity and spins of the mode (sliding: without angular momentum), what is watched, omega^2.
+# Two free grains: initial relative velocity and spins of the mode (sliding: without angular momentum), what is
+# watched, omega^2.
 PAIR_MODES = {
     "stretching": ((SPEED, 0, 0), (0, 0, 0), (0, 0, 0), "vel", 0, -1, 2 * K_STRETCH / MASS),
     "sliding": (ACROSS, (0, 0, SPIN), (0, 0, SPIN), "angVel", 2, 1, 2 * K_SLIDE * SLIDES),
@@ -82,8 +85,9 @@ def test_a_bonded_pair_vibrates_in_every_mode(mode, mover):
 
 
 def bending_mode(bonds):
-    """(omega [1/s], displacements (n,), angles (n,)) of the slowest bending of n grains behind a held one: transverse displacements y
-    and angles theta, with zeta = r (theta_k + theta_k+1) - LEVER (y_k+1 - y_k) and the tilt theta_k+1 - theta_k of each bond."""
+    """(omega [1/s], displacements (n,), angles (n,)) of the slowest bending of n grains behind a held one: transverse
+    displacements y and angles theta, with zeta = r (theta_k + theta_k+1) - LEVER (y_k+1 - y_k) and the tilt theta_k+1 -
+    theta_k of each bond."""
     n = bonds
     slide, tilt = np.zeros((n, 2 * n + 2)), np.zeros((n, 2 * n + 2))
     for k in range(n):
@@ -99,8 +103,8 @@ def bending_mode(bonds):
 
 @pytest.mark.parametrize("mover", MOVERS)
 def test_a_bonded_chain_vibrates_as_a_beam(mover):
-    """The first bending of eleven grains, the first one held: the eigenvalue of the springs' matrix, and Euler and Bernoulli's beam to
-    the half per cent that ten lumps, their spins and their sliding leave."""
+    """The first bending of eleven grains, the first one held: the eigenvalue of the springs' matrix, and Euler and
+    Bernoulli's beam to the half per cent that ten lumps, their spins and their sliding leave."""
     bonds = 10
     omega, shape, angle = bending_mode(bonds)
     start(mover, 0.1, bonds + 1, held=1)

@@ -1,4 +1,5 @@
-"""Sintered bonds in YADE (functors): breaking of a pair against closed forms, the ledger and momenta of clusters that break."""
+"""Sintered bonds in YADE (functors): breaking of a pair against closed forms, the ledger and momenta of clusters that
+break."""
 
 from math import sin
 
@@ -38,8 +39,9 @@ DRIVEN = {
 @pytest.mark.parametrize("mode", DRIVEN)
 @pytest.mark.parametrize("neck, shrunk", [(0.2, 0.99956), (0.6, 0.9575)])
 def test_each_mode_breaks_for_good_at_its_breaking_energy(mode, neck, shrunk):
-    """Two grains moved at given rates (all degrees of freedom blocked): the bond breaks in the step in which one mode's energy passes pi a^2 gamma, the books have
-    what it held, and what is left is an ordinary contact of the shrunk grains if these overlap (beta = 0.2), and nothing if they don't (0.6)."""
+    """Two grains moved at given rates (all degrees of freedom blocked): the bond breaks in the step in which one mode's
+    energy passes pi a^2 gamma, the books have what it held, and what is left is an ordinary contact of the shrunk
+    grains if these overlap (beta = 0.2), and nothing if they don't (0.6)."""
     how, which, displacement, stiffness = DRIVEN[mode]
     b = pair(neck, 0.02, **how, blocked="xyzXYZ")
     sums = []
@@ -65,7 +67,7 @@ def test_each_mode_breaks_for_good_at_its_breaking_energy(mode, neck, shrunk):
 
 
 def test_new_contacts_are_ordinary_and_of_shrunk_grains():
-    """Two lone grains in a scene with necks: nothing at 2 R', sticking as JKR grains of radius R' and unchanged mass."""
+    """Two lone grains in a scene with necks: nothing at 2 R', sticking as JKR grains of radius R', unchanged mass."""
     new_scene(0.02 * unit, neck=0.6)
     grain((0, 0, 0), 1e-7, ice())
     grain((2.001e-7, 0, 0), 1e-7, ice(), (-2.0, 0, 0))
@@ -85,7 +87,8 @@ def test_new_contacts_are_ordinary_and_of_shrunk_grains():
 
 @pytest.mark.parametrize("neck,speed", [(0.3, 10.0), (0.6, 30.0)])
 def test_ledger_of_breaking_clusters_closes_with_second_order_and_momenta_stay(neck, speed):
-    """Eight bonded grains that fly apart, bump into each other and break. Root mean square over six clusters of the largest closure error; second order gives 16."""
+    """Eight bonded grains that fly apart, bump into each other and break. Root mean square over six clusters of the
+    largest closure error; second order gives 16."""
     breaks = 0
 
     def closure(step, seed):

@@ -9,8 +9,8 @@ pytestmark = pytest.mark.in_yade
 
 
 def test_normal_forces_are_all_that_presses():
-    """In a compressed cluster, whose contacts slide, roll and twist, the pressure of normal forces alone is a third of the
-    trace of YADE's stress of all forces (which is positive in tension)."""
+    """In a compressed cluster, whose contacts slide, roll and twist, the pressure of normal forces alone is a third of
+    the trace of YADE's stress of all forces (which is positive in tension)."""
     from yade_scripts.experiments.compression import KIND
 
     scene = KIND.prepare(KIND.parse(dict(grains=64, strainRate=1e-4, stepFraction=0.2, threads=1)), 1)

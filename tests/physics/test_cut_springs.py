@@ -1,4 +1,5 @@
-"""The limit rule `cut` (Sirono & Ueno 2017, section 3.2) on pairs, against closed forms: energy a cut, run-out (so the mean resistance), order of convergence."""
+"""The limit rule `cut` (Sirono & Ueno 2017, section 3.2) on pairs, against closed forms: energy a cut, run-out (so the
+mean resistance), order of convergence."""
 
 import pytest
 from scenes import *
@@ -24,7 +25,8 @@ def pair(mode, step, spin, limit, blocked, mover):
 
 
 def run_out(mode, mover, limit, cuts, step):
-    """(way [limits], dissipated [k crit^2/2], closure, dissipated by other modes over that) of a pair with so many k crit^2/2 until it stands."""
+    """(way [limits], dissipated [k crit^2/2], closure, dissipated by other modes over that) of a pair with so many k
+    crit^2/2 until it stands."""
     k, crit = spring(mode)
     axis, fused = 0 if mode == "twisting" else 2, mover == "fused"
 
@@ -50,8 +52,9 @@ def run_out(mode, mover, limit, cuts, step):
 @pytest.mark.parametrize("mover", ["functors", "fused"])
 @pytest.mark.parametrize("mode", MODES_OF_PAIRS)
 def test_run_out_of_a_pair_that_turns_freely(mode, mover):
-    """Centres held. With n + f times the energy e = k crit^2/2 a cut spring is cut n times and stops at (n + f^(1/2)) crit, having dissipated n e; a held one
-    stops at (1 + n + f)/2 crit. Errors of second order: root mean square over five f, at steps a factor 4 apart; first order would give 4."""
+    """Centres held. With n + f times the energy e = k crit^2/2 a cut spring is cut n times and stops at (n + f^(1/2))
+    crit, having dissipated n e; a held one stops at (1 + n + f)/2 crit. Errors of second order: root mean square over
+    five f, at steps a factor 4 apart; first order would give 4."""
     fractions = np.array([0.18, 0.34, 0.5, 0.66, 0.82])
     coarse, fine = (np.array([run_out(mode, mover, "cut", 20 + f, step) for f in fractions]) for step in (0.05, 0.0125))
     error = [rms(rows[:, 1] - 20) for rows in (coarse, fine)]

@@ -1,4 +1,5 @@
-"""Two grains, or a grain and a plane, in YADE against closed forms and an independent integration: error and order of convergence."""
+"""Two grains, or a grain and a plane, in YADE against closed forms and an independent integration: error and order of
+convergence."""
 
 import pytest
 from scenes import *
@@ -48,7 +49,8 @@ def viscous(time):
 
 @AGAINST
 def test_sticking_velocity_without_drag(radius2, mover):
-    """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m*]^(1/2) (A22 eqs 9, 10), 5.95 m/s for ice of 0.1 um; of a plane R = r and m* = m."""
+    """[2 (8/15 2^(2/3) + 4/45) F_c delta_c/m*]^(1/2) (A22 eqs 9, 10), 5.95 m/s for ice of 0.1 um; of a plane R = r and
+    m* = m."""
     c = pair_constants(ICE, R, ICE, radius2)
     closed = np.sqrt(2 * (8 / 15 * 2 ** (2 / 3) + 4 / 45) * c.pull_off_force * c.pull_off_overlap / c.reduced_mass)
     assert radius2 == PLANE or closed == pytest.approx(5.95, abs=0.005)
@@ -58,8 +60,9 @@ def test_sticking_velocity_without_drag(radius2, mover):
 @AGAINST
 @pytest.mark.parametrize("kind", ["elastic", "viscous", "unlike"])
 def test_rebound_converges_with_second_order(kind, radius2, mover):
-    """Rebound speed against a closed form (elastic) or an independent integration. Contacts form and break anywhere within a step, so the error at
-    one step scatters: root mean square over twelve gaps. Events that are not located in time would give first order (ratio 2)."""
+    """Rebound speed against a closed form (elastic) or an independent integration. Contacts form and break anywhere
+    within a step, so the error at one step scatters: root mean square over twelve gaps. Events that are not located in
+    time would give first order (ratio 2)."""
     speed, time = (40.0, 2e-12) if kind == "viscous" else (9.0, 0.0)
     material, like = ice(viscoelasticTime=time), viscous(time)
     other, its = (soft(), SOFT) if kind == "unlike" else (material, like)
@@ -78,9 +81,9 @@ def test_rebound_converges_with_second_order(kind, radius2, mover):
 @pytest.mark.parametrize("mode", ["sliding", "rolling", "twisting"])
 @pytest.mark.parametrize("radius2", [1e-7, 2.5e-7])
 def test_driven_past_the_limit(mode, radius2):
-    """Two blocked grains at equilibrium are turned until a displacement is 8 times its limit: force at the limit, stored k/2 crit^2, dissipated
-    k crit (total - crit) (A22 eqs 13-26), and the other two modes untouched. The pointers' finite angles (up to 8 crit/r, 6 %) enter in second
-    order, less for smaller grains' limits."""
+    """Two blocked grains at equilibrium are turned until a displacement is 8 times its limit: force at the limit,
+    stored k/2 crit^2, dissipated k crit (total - crit) (A22 eqs 13-26), and the other two modes untouched. The
+    pointers' finite angles (up to 8 crit/r, 6 %) enter in second order, less for smaller grains' limits."""
     c = constants(ice(), 1e-7, ice(), radius2)
     new_scene(0.1 * c["timeUnit"])
     r1, r2 = 1e-7, radius2
@@ -111,7 +114,8 @@ def test_driven_past_the_limit(mode, radius2):
 
 
 def test_linear_damping_of_k13():
-    """A pair at equilibrium with k_n = 0.02 rings at the slope 6 F_c/(5 delta0) (A24 eq 38) and decays as exp(-k_n m0 t/(2 m* t0))."""
+    """A pair at equilibrium with k_n = 0.02 rings at the slope 6 F_c/(5 delta0) (A24 eq 38) and decays as exp(-k_n m0
+    t/(2 m* t0))."""
     c = constants(ice(), 1e-7)
     new_scene(0.02 * c["timeUnit"], damping=0.02)
     d = 2e-7 - c["equilibriumOverlap"]

@@ -1,4 +1,5 @@
-"""Grains on planes (YADE's Wall), with the functors and the fused engine, against closed forms and a huge second sphere (rebounds: test_pairs.py)."""
+"""Grains on planes (YADE's Wall), with the functors and the fused engine, against closed forms and a huge second sphere
+(rebounds: test_pairs.py)."""
 
 import pytest
 from scenes import *
@@ -27,8 +28,8 @@ def lone_grain(position, velocity=STILL, spin=STILL, step=0.05, blocked="", plan
 @pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("mode", ["sliding", "dragged", "rolling", "twisting"])
 def test_driven_past_the_limit(mode, limit):
-    """A grain slides, rolls or twists on a plane (or the plane is dragged under it) by 8.5 limits: force or torque at the limit, what is stored and lost
-    (A22 eqs 13-26; cut: 8 springs of k crit^2/2), and the other modes untouched."""
+    """A grain slides, rolls or twists on a plane (or the plane is dragged under it) by 8.5 limits: force or torque at
+    the limit, what is stored and lost (A22 eqs 13-26; cut: 8 springs of k crit^2/2), and the other modes untouched."""
     spring = "sliding" if mode == "dragged" else mode
     crit, k = getattr(ICY, "critical_" + spring), getattr(ICY, spring + "_stiffness")
     steps, total = 3400, 8.5 * crit
@@ -66,8 +67,8 @@ VELOCITY, SPIN = np.array([1.7, 0.6, -12.0]), np.array([1e8, -0.7e8, 2e8])
 
 
 def impact(step=0.05, axis=2, side=1, radius2=None, plane_velocity=STILL, gap=0.003, first=True, **options):
-    """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after it over K(0).
-    Vectors are given for a plane across z, below the grain, and turned with it."""
+    """(velocity, spin r) of a grain that has met a plane (appended before it or after) obliquely, and the closure after
+    it over K(0). Vectors are given for a plane across z, below the grain, and turned with it."""
     turn = np.roll(np.eye(3), axis - 2, axis=0) if side > 0 else np.roll(np.diag([1.0, -1, -1]), axis - 2, axis=0)
     new_scene(step * ICY.time_unit, **options)
     drift = turn @ plane_velocity
@@ -120,7 +121,8 @@ def test_ledger_of_an_oblique_impact_closes_with_second_order(options):
 
 
 def piston(step):
-    """A plane pushes three grains in a row against another: (closure in time, difference of constraintWork and the work integrated) over the work."""
+    """A plane pushes three grains in a row against another: (closure in time, difference of constraintWork and the work
+    integrated) over the work."""
     new_scene(step * ICY.time_unit)
     gap = 2 * R - constants(ice(), R)["equilibriumOverlap"]
     plane(ice())

@@ -80,13 +80,6 @@ def test_a_collision_and_its_summary(installed, tmp_path):
     assert done.returncode == 0 and "outcome" in done.stdout
 
 
-def test_a_study_by_the_name_of_its_table(installed):
-    _, call = installed
-    done = call("dust-study", "demo", "--status")
-    assert done.returncode == 0 and "waiting" in done.stdout, done.stderr
-    assert call("dust-study", "no-such-study").returncode == 2
-
-
 def test_no_link_of_an_installation_leads_to_the_checkout(installed):
     prefix, _ = installed
     places = {Path(os.path.realpath(path)) for path in prefix.rglob("*") if path.is_symlink()}
@@ -138,11 +131,9 @@ def test_a_prefix_that_cannot_be_is_refused_before_anything_is_written(tmp_path)
     assert os.listdir(tmp_path) == ["lib"]
 
 
-def test_all_users_can_read_an_installation(tmp_path):
-    before = os.umask(0o077)
-    try:
-        assert installation("install", tmp_path / "prefix", "/nowhere").returncode == 0
-    finally:
-        os.umask(before)
-    installed = [file for file in (tmp_path / "prefix/lib").rglob("*") if not file.is_symlink()]
-    assert all(file.stat().st_mode & 0o044 == 0o044 for file in installed)
+def test_another_yade_than_those_that_were_tried_is_refused_in_one_line():
+    command = ["make", "--no-print-directory", "known-yade", "YADE_VERSION=2027.1.0"]
+    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True)
+    lines = [line for line in done.stderr.splitlines() if "***" not in line]
+    assert done.returncode != 0 and len(lines) == 1 and "2027.1.0 is installed: must be one of 2023.02a" in lines[0]
+    assert subprocess.run([*command, "YADE_INCLUDE=/source"], cwd=TOP, capture_output=True).returncode == 0

@@ -1,6 +1,7 @@
 """The virtual functions of the plugin's classes stand where those of YADE's classes with the same base do.
 
-Sizes and offsets are asserted when the plugin is compiled (contact_law/yade_interface/layouts.cpp); the order of virtual functions cannot be.
+Sizes and offsets are asserted when the plugin is compiled (contact_law/yade_interface/layouts.cpp); the order of
+virtual functions cannot be.
 """
 
 import ctypes
@@ -22,7 +23,8 @@ class Found(ctypes.Structure):
 
 
 def virtual_functions(class_name):
-    """Names of the functions in all tables of a class, without class and arguments; with "-8" and the like for where a further table starts."""
+    """Names of the functions in all tables of a class, without class and arguments; with "-8" and the like for where a
+    further table starts."""
     loaded = ctypes.CDLL(None)
     table = (ctypes.c_size_t * 100).in_dll(loaded, f"_ZTVN4yade{len(class_name)}{class_name}E")
     found, symbols = Found(), []

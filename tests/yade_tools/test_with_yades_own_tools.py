@@ -85,15 +85,10 @@ def test_help_describes_attributes_with_units_and_energies_start_anew_after_they
 
 SETTINGS = {
     "constants(ice(surfaceEnergy=-1), 1e-7)": "surfaceEnergy = -1: must be > 0 [J/m^2]",
-    "constants(ice(poisson=0.6), 1e-7)": "poisson = 0.6: must be from 0 to 0.5",
     "constants(ice(poisson=0, viscoelasticTime=1e-12), 1e-7)": "poisson = 0: must be from 0 to 0.5, and above 0",
-    "constants(ice(criticalRolling=float('nan')), 1e-7)": "criticalRolling = nan: must be > 0 [m]",
     "functor.neck = 0.71": "neck = 0.71: must be 0 (no bonds), or up to 0.7",
-    "functor.neck = -0.1": "neck = -0.1: must be 0 (no bonds), or up to 0.7",
-    "functor.linearDamping = -1": "linearDamping = -1: must be >= 0",
     "Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=float('nan'))": "linearDamping = nan: must be >= 0",
     "functor.slidingStiffnessFactor = 0": "slidingStiffnessFactor = 0: must be > 0",
-    "material.surfaceEnergy = 0": "surfaceEnergy = 0: must be > 0 [J/m^2]",
     "JKRMat(young=-1)": "young = -1: must be > 0 [Pa]",
 }
 
