@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 from PIL import Image  # with which matplotlib itself writes PNGs
 
 from ..runs.files import replacing
@@ -75,14 +74,6 @@ def legend(axes, **options):
     """Legend without a frame, where there is something to name."""
     if axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False, **options)
-
-
-def plain_ticks(axis):
-    """Ticks of a logarithmic axis with plain numbers, at 1, 2 and 5 where it spans less than two decades."""
-    low, high = axis.get_view_interval()
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 50 * low else (1,)))
-    axis.set_major_formatter(lambda number, _: f"{number:g}")
-    axis.set_minor_formatter(NullFormatter())
 
 
 def run_title(run, addition=None):
