@@ -4,6 +4,8 @@ import sys
 
 import numpy as np
 
+from analysis.runs.format import BROKEN_BONDS
+
 if "yade" in sys.modules:  # pytest itself, which collects the tests, does without
     from yade import utils
     from yade.minieigenHP import *
@@ -255,11 +257,9 @@ def broken():
     """Bonds that have broken so far, by mode."""
     if isinstance(O.engines[0], JKRWadaEngine):
         counts = O.engines[0].statistics()
-        return [counts[mode] for mode in MODES]
-    return [getattr(O.engines[2].lawDispatcher.functors[0], mode) for mode in MODES]
+        return [counts[mode] for mode in BROKEN_BONDS]
+    return [getattr(O.engines[2].lawDispatcher.functors[0], mode) for mode in BROKEN_BONDS]
 
-
-MODES = ("brokenByStretching", "brokenBySliding", "brokenByRolling", "brokenByTwisting")
 
 if "yade" in sys.modules:
     unit = constants(ice(), 1e-7)["timeUnit"]  # t0 of two grains of ice [s]

@@ -8,9 +8,14 @@ from analysis.runs.format import CHANNEL_TABLE
 pytestmark = pytest.mark.in_yade
 
 
-def test_plugin_and_run_folders_have_the_same_channels():
+def test_plugin_and_run_folders_have_the_same_channels_and_modes_of_bonds():
     """Names, kinds and order of contact_law/kernel/energy_channels.hpp and analysis/runs/format.py."""
-    assert [tuple(row) for row in contact_law.channels] == [(c.name, c.kind) for c in CHANNEL_TABLE]
+    assert list(contact_law.channels) == [(c.name, c.kind) for c in CHANNEL_TABLE]
+    new_scene(0.1 * unit, "fused")
+    grain((0, 0, 0), 1e-7, ice())
+    O.step()
+    modes = [name for name in O.engines[0].statistics() if name.startswith("brokenBy") and name.endswith("ing")]
+    assert modes == list(BROKEN_BONDS)
 
 
 @pytest.mark.parametrize(
