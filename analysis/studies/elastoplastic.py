@@ -27,8 +27,7 @@ ZONES = f"grains per volume in the two zones that meet, {DEPTH:g} R deep and wid
 UNCHANGED = {"viscoelasticTime": 0.0, "removeLooseGrains": 0.0, "initialOverlap": 1.0}
 # What A24 prints, by filling: sigma, E* [Pa] (eqs 34, 35), delta_offset [grain radii] (18, 20), delta_max/R* (19, 21).
 PRINTED = {0.4: (2.25e6, 15.7e6, 0.271, 0.113), 0.3: (0.428e6, 4.96e6, -0.010, 0.199)}
-GRAIN_RADIUS = 1e-7  # m: A24's, and of all runs
-START = (15.0, 3.0)  # of fits: ln sigma [Pa], 100 delta_crit/R*
+GRAIN_RADIUS, START = 1e-7, (15.0, 3.0)  # m, of all runs; where fits start: ln sigma [Pa], 100 delta_crit/R*
 
 
 def _compression(run, row):
@@ -40,7 +39,6 @@ def _compression(run, row):
 
 def _packings(run, row):
     start, radius, grain_radius = run.start, row["radius"], row["grain_radius"]
-    # The spheres stand at -+(R + r) on the collision axis (A24 section 3).
     centres = np.array([-1.0, 1.0])[start.aggregate, None] * (radius + grain_radius) * np.array([1.0, 0.0, 0.0])
     inside = inner_coordination(start.position, start.contact_pairs, centres, radius - SKIN * grain_radius)
     return inside, zones_that_meet(start.position, start.aggregate, radius, grain_radius)
@@ -227,9 +225,8 @@ def _sizes(plain):
         if filling == 0.4:
             yield A24("c1 of d_max = c1 R − c2, φ = 0.4", c1, 0.0566, "0.0566", "14")
             yield A24("c2 of d_max = c1 R − c2, φ = 0.4 [r]", c2, 0.527, "0.527", "14")
-    density = 0.4 * ICE.density
-    rigid = lambda x: andrews.stress_if_rigid(x, VELOCITY, density)
-    elastic = lambda x: andrews.young_if_elastic(x, VELOCITY, density)
+    rigid = lambda x: andrews.stress_if_rigid(x, VELOCITY, 0.4 * ICE.density)
+    elastic = lambda x: andrews.young_if_elastic(x, VELOCITY, 0.4 * ICE.density)
     least = lambda x: 2.0 * elastic(x) / np.pi * np.sqrt(x)  # A24 eq 24
     for what, f, paper in (
         ("σ of rigid-plastic spheres with δ_max/R*", rigid, 1.67),
@@ -301,17 +298,20 @@ def _one_collision(large):
 
 
 def _new(runs, plain):
-    """What comes back, where thin places are, and what touching neighbours change."""
+    """What comes back, where thin places are, and pairs with one thing changed."""
     for filling in PRINTED:
         own, what = where(plain, filling=filling, velocity=VELOCITY), f"φ = {filling}"
         returned = estimate(mean("returned"), where(own, radius=80))
         yield Row(f"returned when the halves part fastest, R = 80 r, {what} [K(0)]", returned)
         zones = estimate(zone_correlation, own)
         yield Row(f"correlation of d_max and the filling of the zones that meet, {what}", zones)
-    of_forty = {"filling": 0.4, "radius": 40, "velocity": VELOCITY}
-    touching = where(runs, **of_forty, viscoelasticTime=0, removeLooseGrains=0, initialOverlap=1e-3)
-    deeper = beside(mean("d"), once(touching), where(plain, **of_forty))
-    yield Row("d_max, neighbours that touch less those at rest, R = 40 r, φ = 0.4 [r]", deeper)
+    for key, own in runs[runs.changed].groupby([*UNCHANGED, "filling", "radius", "velocity"]):
+        *values, filling, radius, v = key
+        words = ", ".join(f"{name} = {value:g}" for name, value in zip(UNCHANGED, values) if value != UNCHANGED[name])
+        same, what = where(plain, filling=filling, radius=radius, velocity=v), f"R = {radius:g} r, φ = {filling}"
+        for column, name, unit in (("d", "d_max", "r"), ("t", "t_max", "ns")):
+            change = beside(mean(column), once(own), same)
+            yield Row(f"{name}, {words} less the same pairs without, {what}, {v:.3g} m/s [{unit}]", change)
 
 
 def figures(runs):
@@ -336,8 +336,7 @@ def figures(runs):
 
 STUDY = Study(
     title="Arakawa et al. (2024): collisions of elastoplastic aggregates",
-    question="Do equal close-packed aggregates that collide head on compress like elastoplastic spheres (Andrews "
-    "1930), and with which yield stress and elastic modulus?",
+    question="Do close-packed aggregates compress like elastoplastic spheres, with which yield stress and modulus?",
     scene=Scene(
         name="the study of Arakawa et al. (2024)",
         values={"packing": "cpe"} | {name: own for name, own in columns.HEAD_ON_ICE.items() if name not in UNCHANGED},
