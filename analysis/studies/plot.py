@@ -77,9 +77,9 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
     if figure is None:
         raise CannotPlot(f"{what}: no run has a value")
-    title = f"{len(found)} runs of {found.pair.nunique()} pairs" + f", {number - len(found)} left out" * (
-        len(found) < number
-    )
+    several = lambda n, what: f"{n} {what}{'s' * (n != 1)}"
+    title = f"{several(len(found), 'run')} of {several(found.pair.nunique(), 'pair')}"
+    title += f", {number - len(found)} left out" if len(found) < number else ""
     figure.suptitle("\n".join(textwrap.wrap(title, int(LETTERS * figure.get_figwidth()))), fontsize=10)
     return figure
 
