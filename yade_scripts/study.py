@@ -1,27 +1,24 @@
 """Run a table to its end, however often it is stopped in between.
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, JOBS threads at once
-    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; from any shell and
-                                                     folder; runs nothing, nor a script that the table names
-    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- OPTIONS]   what is left as job arrays of Slurm, JOBS
-    tasks of
-                                                     each at once; OPTIONS of sbatch: -- --time=12:00:00
+    python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; runs nothing
+    python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- --time=12:00:00]
+                                                     what is left as job arrays of Slurm, JOBS tasks of each at once;
+                                                     after --: options of sbatch
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's (its duration may be longer);
-runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before
-anything runs, the time it will take is estimated from runs that have ended, or from a piece of one that is measured,
-and printed. Ctrl-C and SIGTERM stop the runs, each with a checkpoint. A row that runs on another machine of a shared
-disk is waited for, and run here if it stops there. Logs are in runs/logs/NAME of the table. TABLE may also be the
-name of a study's table, elastoplastic-desk, which is written into yade_scripts/studies if it isn't there. Of
-yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS are obeyed, others refused.
+runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before anything
+runs, the time it will take is estimated and printed. Ctrl-C and SIGTERM stop the runs, each with a checkpoint. Logs are
+in runs/logs/NAME of the table. TABLE may also be the name of a study's table, elastoplastic-desk, which is written into
+yade_scripts/studies if it isn't there. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS count.
 
-With --slurm each row that is left is one task, or short ones share one, by the same rules, of as many processors as a
-row has threads. A minute before its time limit a task writes its checkpoint and is queued again; rows that are in the
-queue already are not submitted. --dry-run prints the scripts, and submits nothing.
+With --slurm each row that is left is one task, or short ones share one. A minute before its time limit a task writes
+its checkpoint and is queued again. --dry-run prints the scripts, and submits nothing.
 
 Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
 others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when
-stopped."""
+stopped.
+"""
 
 import argparse
 import os
@@ -57,21 +54,12 @@ STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", metavar="TABLE")
-    parser.add_argument(
-        "-j",
-        "--jobs",
-        type=int,
-        metavar="JOBS",
-        help=f"threads at once (default: one for each core, {CORES}); with --slurm tasks of an array (default: as Slurm likes)",
-    )
+    jobs = f"threads at once (default: one for each core, {CORES}); with --slurm tasks of an array (default: all)"
+    parser.add_argument("-j", "--jobs", type=int, metavar="JOBS", help=jobs)
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
-    parser.add_argument(
-        "--slurm", action="store_true", help="submit what is left to Slurm; after --: options of sbatch"
-    )
-    parser.add_argument(
-        "--dry-run", action="store_true", help="with --slurm: print the job scripts, and submit nothing"
-    )
+    parser.add_argument("--slurm", action="store_true", help="submit what is left; after --: options of sbatch")
+    parser.add_argument("--dry-run", action="store_true", help="with --slurm: print the job scripts, submit nothing")
     end = arguments.index("--") if "--" in arguments else len(arguments)
     options = parser.parse_args(arguments[:end])
     options.sbatch = arguments[end + 1 :]
@@ -90,8 +78,7 @@ def find_table(table):
 
 
 def hint(table):
-    """' (did you mean ...?)' for a table that isn't there, of those in its folder and those that come with this; or
-    ''."""
+    """' (did you mean ...?)' for a table that isn't there, or ''."""
     folder, name = os.path.split(table)
     if os.path.exists(table):
         return ""
@@ -179,7 +166,7 @@ def close(study, stop):
     states = study.states()
     failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
     for row, state in failures:
-        if not row.error:  # told at the start
+        if not row.error:  # printed at the start
             tell(f"{row.name}: {state.note}", SCRIPT)
     stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     for row in () if stop.received else stopped:

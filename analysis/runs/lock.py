@@ -20,6 +20,12 @@ from pathlib import Path
 from .files import RunFolderError, make_new, read_json
 from .format import LOCK_FILE
 
+try:
+    import fcntl
+except ImportError:  # not of POSIX, where runs are only read
+    fcntl = None
+
+TRIES, BETWEEN = 5, 0.02  # s
 SQUEUE_AGAIN = 10.0  # s for which an answer of squeue is kept
 ALIVE = ("RUNNING", "COMPLETING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT")
 _JOB = re.compile(r"(\d+)(_\d+)?")
@@ -59,14 +65,9 @@ def take(folder):
     """Have a run folder (path) for this process until it ends, or until release(); returns the handle of the folder.
 
     Raises InUse where another run has it, and OSError where it cannot be written."""
-    import fcntl  # of POSIX; the analysis of runs does without
-
     handle = os.open(folder, os.O_RDONLY)
     try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise InUse("another run is writing there; must be another folder") from None
+        _hold(handle)
         file, before = os.path.join(folder, LOCK_FILE), read_lock(folder)
         if before and not _is_over(before):
             must = f"must be another folder, or, if that run was killed, {file} removed"
@@ -85,6 +86,15 @@ def take(folder):
     return handle
 
 
+def _hold(handle):
+    """Lock a folder's handle; InUse where another run has. Who only looks (is_held) has it for a moment."""
+    for _ in range(TRIES):
+        with suppress(BlockingIOError):
+            return fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        time.sleep(BETWEEN)
+    raise InUse("another run is writing there; must be another folder")
+
+
 def release(folder, handle):
     """Give a folder back that take() has taken."""
     with suppress(OSError):
@@ -96,7 +106,7 @@ def under_way(folder):
     """Lock of the run that is under way in a folder (path), or None."""
     lock = read_lock(folder)
     if is_held(folder):
-        return lock if lock and lock.is_here else Lock(*this_machine())
+        return lock or Lock(*this_machine())
     return None if lock is None or _is_over(lock) else lock
 
 
@@ -110,17 +120,16 @@ def read_lock(folder):
 
 
 def is_held(folder):
-    """Whether a process of this machine holds the kernel's lock on a folder (path): without taking it, from the
-    kernel's list."""
-    held = (
-        r"\d+: FLOCK +\S+ +\S+ +-?\d+ +[0-9a-f]+:[0-9a-f]+:(\d+) "  # of one that waits for it, '->' follows the number
-    )
-    try:
-        inode = str(os.stat(folder).st_ino)
-        with open("/proc/locks") as lines:
-            return any(found.group(1) == inode for found in (re.match(held, line) for line in lines) if found)
-    except OSError:
-        return False
+    """Whether a process of this machine holds the kernel's lock on a folder (path)."""
+    with suppress(OSError, AttributeError):  # without fcntl nothing is held
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return True
+        finally:
+            os.close(handle)
+    return False
 
 
 def this_machine():

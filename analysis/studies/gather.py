@@ -20,7 +20,7 @@ LENGTH = "duration", "endWhenApart"  # how long a run is: of two of one collisio
 
 @dataclass
 class Gathered:
-    """Runs of a study: table (DataFrame, a row a run; None where there is none), provenance (runs.provenance), notes
+    """Runs of a study: table (DataFrame, a row a run; None where there is none), provenance (runs.collect), notes
     (a line for each run left out) and problems (one for each path or run that could not be read)."""
 
     table: pandas.DataFrame = None

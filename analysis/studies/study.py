@@ -5,13 +5,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from pathlib import Path
+from runpy import run_path
 from traceback import extract_tb
 from typing import Callable
 
 from ..printable import suggested
 from ..runs.collect import Scene
 from ..runs.format import PARAMETER_WORDS
-from ..runs.script import module_of
 from .columns import LARGEST, OUTCOME, VELOCITY, flat, parameter, row_of
 
 NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
@@ -113,10 +113,10 @@ def find(name):
         if not file.is_file():
             raise NoSuchStudy(f"{file}: no such file")
         with own_errors(file):
-            module = module_of(str(file), f"own_study_{file.stem}")
-        if not hasattr(module, "STUDY"):
+            defined = run_path(str(file), run_name=f"own_study_{file.stem}")
+        if "STUDY" not in defined:
             raise NoSuchStudy(f"{file}: defines no STUDY; {SAYS}")
-        return replace(module.STUDY, name=file.stem, file=file)
+        return replace(defined["STUDY"], name=file.stem, file=file)
     if name not in NAMES:
         raise NoSuchStudy(f"no study {name}{suggested(name, NAMES)}, or a file NAME.py of one's own")
     return replace(import_module(f"..{name}", __name__).STUDY, name=name)

@@ -11,7 +11,6 @@ from running import PYTHON, TOP, study, wait_for
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.cost import typical_seconds
-from yade_scripts.runner.rows import failure
 
 HEADER = "description radius velocity threads out\n"
 TABLE = HEADER + "a 5 10 1 runs/a\nb 5 11 2 runs/b\nc 5 12 1 runs/c\nrefused 5 -1 1 runs/d\n"
@@ -115,14 +114,6 @@ def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
     assert done.returncode == 2 and NOT_SUBMITTED[arguments] in done.stderr.splitlines()[-1]
 
 
-def test_without_slurm_it_is_one_line(tmp_path, monkeypatch):
-    write_table(tmp_path, ONE)
-    monkeypatch.setenv("PATH", str(tmp_path))
-    done = study(tmp_path, "three.table", "--slurm")
-    assert done.returncode == 2
-    assert done.stderr == "study.py: sbatch: not found; must be on a machine that submits to Slurm\n"
-
-
 STOPS = """
 import signal, sys, time
 def hear(*_):
@@ -165,16 +156,6 @@ def begin(tmp_path, signals):
 
 def told(log):
     return [line for line in log.read_text().splitlines() if line in ("begun", "TERM")]
-
-
-def test_what_a_log_says_of_a_run(begin):
-    fails = "from yade import O; import sys; print(sys.argv[1:], O.numThreads); sys.exit('collide.py: no')"
-    _, running, log = begin(fails)
-    assert running.get(60) == 1 and failure(log, "run") == "collide.py: no"
-    assert "['out=run', 'resume=1'] 2" in log.read_text()
-    _, running, log = begin("import os; os.kill(os.getpid(), 9)")
-    assert running.get(60) == 137 and failure(log, "run") == "killed by signal 9"
-    assert "Welcome to Yade" not in log.read_text()  # the same worker
 
 
 @pytest.mark.parametrize("number, near", [(signal.SIGUSR1, True), (signal.SIGTERM, False)], ids=["limit", "SIGTERM"])

@@ -15,9 +15,8 @@ from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import resuming, table
 from yade_scripts.run.parameters import gather
 from yade_scripts.run.report import closing_line, outcome_in
-from yade_scripts.runner import batch, cost, rows
-from yade_scripts.runner.batch import StudyFolder
-from yade_scripts.runner.study import Screen, live_table, total_left
+from yade_scripts.runner import cost, rows
+from yade_scripts.runner.study import Screen, live_table
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
@@ -66,28 +65,12 @@ def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
         assert found.kind == rows.FAILED and "run.json" in found.note
 
 
-def test_runs_that_ended_are_looked_at_once(tmp_path, monkeypatch):
-    """However often the time left is asked for; the estimate is the same one until another run ends."""
-    monkeypatch.chdir(tmp_path)
-    looked, models, model = [], [], cost.Cost._model
-    monkeypatch.setattr(batch, "changed", lambda file: looked.append(file) or float(len(looked)))
-    monkeypatch.setattr(cost.Cost, "_model", lambda self, row: models.append(row) or model(self, row))
-    study_folder, given = StudyFolder("any"), [row(out=f"r{number}", seed=number) for number in range(500)]
-    states = [rows.State(rows.DONE, 1.0, 2.0)] * 400 + [rows.State(rows.WAITING)] * 100
-    for _ in range(3):
-        left = total_left(states, study_folder.cost(given, states), given, 1)
-    assert len(looked) == 400 and len(models) == cost.MOST + 3 * 100
-    states[400] = states[0]
-    assert total_left(states, study_folder.cost(given, states), given, 1) == pytest.approx(left * 99 / 100, rel=1e-9)
-    assert len(looked) == 401
-
-
 def test_contact_updates_are_those_of_a_packing():
     """Contacts counted in a packing of A24's at R = 30, whose surface has fewer."""
     overlap = equilibrium_overlap(MATERIALS["ice"])
     counted = len(packings.contacts(packings.cpe(0.4, 30e-7, 1e-7, overlap, seed=1)))
     given = row(radius=30, filling=0.4, duration=64.6 * 30 * TIME_UNIT)
-    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / cost.contact_updates(given) < 1
+    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / (given.estimate.contacts * given.estimate.steps) < 1
 
 
 @pytest.mark.parametrize("cells", [{"radius": 25, "impact": 0.5}, {"packing": "bcca", "grains": 300}], ids=str)
@@ -119,12 +102,6 @@ def test_estimates_follow_ended_runs_and_the_measured_piece():
     piece = cost.Piece(pace=3.0, setup=1.0, start=0.0)
     assert cost.Cost(piece).seconds(small) == pytest.approx(3 * typical, rel=0.1)
     assert cost.Cost(piece, [(small, typical)]).seconds(small) == pytest.approx(2 * typical, rel=0.1)
-
-
-def test_pairs_that_stick_are_expected_to_end_early():
-    """BCCA clusters at 0.3 and 30 m/s."""
-    shares = [row(packing="bcca", grains=300, velocity=v).estimate.share for v in (0.3, 30)]
-    assert shares[0] < 0.1 and shares[1] == 1
 
 
 MAKESPANS = [

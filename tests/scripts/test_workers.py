@@ -14,9 +14,7 @@ from yade_scripts.runner.rows import failure
 RUNS = {
     "bcca": "packing=bcca grains=32 velocity=10 duration=60e-9",
     "refused": "radius=5 stepFraction=0.4 viscoelasticTime=3e-11",  # by the run, which knows the contact
-    "drag": "radius=5 velocity=30 duration=15e-9 viscoelasticTime=6e-12",
     "fails": "radius=5 velocity=3000 unusual=1 duration=10e-9 stepFraction=0.4",
-    "sintered": "packing=bpca grains=20 neck=0.5 limit=cut velocity=10 duration=20e-9",
     "functors": "radius=4 velocity=30 duration=15e-9 engine=functors",
     "two": "radius=5 velocity=30 duration=15e-9 threads=2",
     "killed": "radius=10 velocity=10 duration=500e-9 checkpointInterval=0.1",
@@ -52,7 +50,7 @@ def one_worker(tmp_path_factory):
 
 def test_a_worker_that_is_killed_loses_its_row_alone_and_says_which(one_worker):
     folder, status, output, errors = one_worker
-    assert status == 1 and output.splitlines()[-1].startswith("rows: 9 rows, 6 done, 3 failed; 6 undecided (")
+    assert status == 1 and output.splitlines()[-1].startswith("rows: 7 rows, 4 done, 3 failed; 4 undecided (")
     refused, fails, killed = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
     assert refused.startswith("study.py: refused: collide.py: stepFraction = 0.4: ") and "broke down" in fails

@@ -170,9 +170,9 @@ class Parameters:
         return cls(**values).filled_in()
 
     @classmethod
-    def help_text(cls, without=()):
-        """The parameters but these under the headings of their classes."""
-        columns, lines = {name: each for name, each in cls.columns().items() if name not in without}, []
+    def help_text(cls):
+        """The parameters under the headings of their classes."""
+        columns, lines = dict(cls.columns()), []
         for owner in cls.__mro__:
             own = [name for name in inspect.get_annotations(owner) if name in columns]
             if own:

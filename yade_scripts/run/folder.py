@@ -32,7 +32,7 @@ from analysis.runs.format import (
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run import checkpoint
 
-# Names of files, seen from the folder, that runs write; nothing else is ever removed.
+# Names of files, relative to the folder, that runs write; nothing else is ever removed.
 _OF_RUNS = re.compile(
     rf"{RUN_FILE}|{ENDED_FILE}|{HISTORY_FILE}|{STATES_FOLDER}/\d{{6,}}\.npz|{checkpoint.RECORDER}|{CHECKPOINT_FOLDER}/scene-\d+\.yade"
 )
@@ -111,7 +111,7 @@ class RunFolder:
         self.write(f"{STATES_FOLDER}/{state_file(number)}", npz(**state))
 
     def write(self, name, content):
-        """Write a file of bytes; name: seen from the folder."""
+        """Write a file of bytes; name: relative to the folder."""
         file = os.path.join(self.path, name)
         os.makedirs(os.path.dirname(file), exist_ok=True)
         write_file(file, content)
@@ -122,7 +122,7 @@ class RunFolder:
         self._remove(lambda name: name.startswith(STATES_FOLDER) and name >= f"{STATES_FOLDER}/{state_file(number)}")
 
     def remove_checkpoint(self, but=()):
-        """Remove the files of checkpoints, but those of these names (seen from the folder)."""
+        """Remove the files of checkpoints, but those of these names (relative to the folder)."""
         self._remove(lambda name: name.startswith(CHECKPOINT_FOLDER) and name not in but)
         with suppress(OSError):  # it is not there, or holds something else
             os.rmdir(os.path.join(self.path, CHECKPOINT_FOLDER))

@@ -25,29 +25,22 @@ class Estimate(NamedTuple):
 class Scene:
     """A run that is ready to be built in YADE.
 
-    parameters: of the kind, complete, with a duration and a number as stepFraction; constants: of a contact, as
-    run.scene.pair_constants() gives them; derived: what run.json tells beside the grains and constants; aggregate:
-    (N,) int, the aggregate of each grain; build(): makes the bodies (and the cell); series(state): {name: value} of
-    the kind's own series, state as contact_law.snapshot() with `aggregate`; law: attributes of the contact law, the
-    same words for JKRWadaEngine and Ip2_JKRMat_JKRMat_JKRWadaPhys; energy_is_conserved: whether all channels together
-    are constant (not with moving boundaries and the functors); control(recorder, state): called after each sample,
-    may change the scene (a cell's velGrad); True: the run is at its end, before `duration` is over. It must follow
-    from the recorder's history, the state and the scene alone, so that a run resumes. ended_by(recorder): what
-    brought a run to its end, in a few words, or None; interval: small steps between samples, at most; step_choice:
-    how stepFraction came about, in one line."""
+    control(recorder, state) is called after each sample, may change the scene (a cell's velGrad), and is true when the run
+    is at its end before `duration` is over. It must follow from the recorder's history, the state and the scene alone, so
+    that a run resumes. States are those of contact_law.snapshot(), with `aggregate`."""
 
-    parameters: Any
-    constants: Mapping
-    derived: Mapping
-    aggregate: np.ndarray
-    build: Callable[[], None]
-    series: Callable[[Mapping], Mapping[str, Any]]
-    law: Mapping = field(default_factory=dict)
-    energy_is_conserved: bool = True
+    parameters: Any  # of the kind, complete, with a duration and a number as stepFraction
+    constants: Mapping  # of a contact, as run.scene.pair_constants() gives them
+    derived: Mapping  # what run.json has beside the grains and constants
+    aggregate: np.ndarray  # (N,) int, the aggregate of each grain
+    build: Callable[[], None]  # makes the bodies (and the cell)
+    series: Callable[[Mapping], Mapping[str, Any]]  # state -> {name: value} of the kind's own series
+    law: Mapping = field(default_factory=dict)  # attributes of the contact law, in the engine and in the functors
+    energy_is_conserved: bool = True  # whether all channels together are constant
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False
-    ended_by: Callable[[Any], str | None] = lambda recorder: None
-    interval: int = 50
-    step_choice: str = "as given"
+    ended_by: Callable[[Any], str | None] = lambda recorder: None  # what brought a run to its end, in a few words
+    interval: int = 50  # small steps between samples, at most
+    step_choice: str = "as given"  # how stepFraction came about, in one line
 
     @property
     def time_step(self):
@@ -57,20 +50,15 @@ class Scene:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of run.
+    """A kind of run."""
 
-    format: its name, series and states in run folders. parameters: its class of parameters, of
-    materials.GrainParameters and run.parameters.RunParameters, with a field `duration` [s] and the method title().
-    prepare(parameters, threads of YADE) -> Scene, called within YADE, raises ParameterError and PackingError.
-    estimate(parameters) -> Estimate, without YADE. expected(parameters, run) -> {name: value}: what a run.json should
-    hold of parameters that are None and follow from the run itself. why_undecided(run folder) -> why what the run is
-    about is not decided at its end, in a few words, or None."""
-
-    format: RunKind
-    parameters: type
-    prepare: Callable[[Any, int], Scene]
-    estimate: Callable[[Any], Estimate]
+    format: RunKind  # its name, series and states in run folders
+    parameters: type  # of GrainParameters and RunParameters, with a field `duration` [s] and the method title()
+    prepare: Callable[[Any, int], Scene]  # (parameters, threads of YADE), called within YADE
+    estimate: Callable[[Any], Estimate]  # of parameters, without YADE
+    # (parameters, run.json) -> {name: value} that a run should hold of parameters that are None and follow from the run
     expected: Callable[[Any, Mapping], Mapping] = lambda parameters, run: {}
+    # run folder -> why what the run is about is not decided at its end, in a few words, or None
     why_undecided: Callable[[str], str | None] = lambda folder: None
 
     @property
@@ -94,11 +82,6 @@ class Schedule:
     def samples(self):
         """Number of intervals between samples."""
         return self.steps // self.interval
-
-    def samples_after(self, iteration, fused):
-        """Number of samples taken when O.iter is `iteration`. fused: an O.step is all steps between two samples, and
-        the start is sampled first; otherwise the first step of each interval begins with a sample."""
-        return iteration + 1 if fused else (iteration - 1) // self.interval + 1
 
     @classmethod
     def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22, kept=None):

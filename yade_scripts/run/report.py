@@ -46,7 +46,7 @@ def made_with():
 class Report:
     """Writes run.json at the start (outcome "running", which a killed run keeps) and at the end.
 
-    about: what run.json tells of the run beside software and hardware; start: of this process, on the clock of
+    about: what run.json has of the run beside software and hardware; start: of this process, on the clock of
     time.monotonic(); earlier: wall time [s] before interruptions.
     """
 

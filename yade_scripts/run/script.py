@@ -34,7 +34,7 @@ def main(kind, description):
         parameters = resuming.continued(kind, texts) if resuming.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 
-        import contact_law  # noqa: F401  (the plugin, before anything asks it)
+        import contact_law  # noqa: F401  (the plugin, before its classes are needed)
         from yade_scripts.run.kind import Schedule
 
         scene = kind.prepare(parameters, Omega().numThreads)

@@ -173,7 +173,7 @@ class Batch:
         return [worker for worker in self._workers if worker.row]
 
     def _idle(self, log):
-        """A worker without a row: one that there is, or a new one, which tells the log how it starts."""
+        """A worker without a row: one that there is, or a new one, whose start is in the log."""
         free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
         if not free:
             # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process
@@ -215,7 +215,7 @@ class Worker:
         task = dict(
             script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=os.path.abspath(log)
         )
-        with open(log, "a"), suppress(OSError):  # a worker that has died: poll() tells
+        with open(log, "a"), suppress(OSError):  # a worker that has died: poll() finds out
             self.connection.send(task)
 
     def poll(self):

@@ -100,11 +100,6 @@ class Cost:
         return self.piece or Piece(1.0, 1.0, 0.0)
 
 
-def contact_updates(row):
-    """Steps times contacts of a row's run, as its kind estimates them."""
-    return row.estimate.contacts * row.estimate.steps
-
-
 def typical_seconds(row):
     """Seconds that the run of a row takes on a usual processor, by the row alone; infinity for a kind of a user's
     own."""

@@ -107,15 +107,13 @@ def read(path):
 
 
 def write(path, rows):
-    """Write rows as a table whose runs resume in the same folders; [FILE:LINE] of each, by which its script finds
-    it."""
+    """Write rows as a table whose runs resume in the same folders."""
     own = lambda row: {"description": row.name, "out": row.out}
     table.write(path, [{**own(row), **row.cells, "resume": 1, "!THREADS": row.threads} for row in rows])
-    return [f"{path}:{row.line}" for row in table.read(path)]
 
 
 def find_script(name):
-    """The script that a table names: seen from the folder that one stands in, or else from the top of this suite."""
+    """The script that a table names: below the folder that one stands in, or else below the top of this suite."""
     own = os.path.join(TOP, name)
     return own if not os.path.isfile(name) and os.path.isfile(own) else name
 
@@ -138,7 +136,7 @@ def _require_columns(path, row):
 
 
 def _threads_of_yade(cells, parameters):
-    """Of yade-batch's columns, or None; ParameterError where they and `threads` say different things."""
+    """Of yade-batch's columns, or None; ParameterError where they and `threads` differ."""
     column, found = RunParameters.columns()["threads"], parameters.threads
     for name in (name for name in THREADS if name in cells):
         given = replace(column, name=name).value(cells[name])

@@ -9,7 +9,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from inspect import cleandoc
 from itertools import product
 from numbers import Integral
 
@@ -26,7 +25,7 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 STUDY = os.path.join(TOP, "study.py")
 OURS = ("out", "overwrite", "resume")  # parameters that a sweep sets
 POLL = 0.5  # s
-TOLD = 3  # failures that an exception names
+NAMED = 3  # failures that an exception names
 
 
 class RunsFailed(RuntimeError):
@@ -34,19 +33,31 @@ class RunsFailed(RuntimeError):
 
 
 def collide(folder="runs", jobs=None, **parameters):
-    """Run collisions, and return analysis.table() of them: a row for every combination of the values.
-
-    parameters: as collide.py has them (below); a list, range or array stands for several values, None for the
-    default. folder: where the run folders go, named after their parameters, a duration that is given among them;
-    those that are there are resumed, or taken as they are when they have ended. jobs: threads at once (one for each
-    core).
-
-    The rows stand in a table in the folder, which study.py runs too: --status tells how far they are from any shell.
-    ParameterError (a ValueError with the line that collide.py has) for a wrong name or value, before anything runs;
-    RunsFailed when a run failed, which may have begun beside others (a file or filling that cannot be), or yade is
-    missing. Ctrl-C stops the runs, each with a checkpoint.
+    """Run collisions: one for every combination of the values of the parameters.
 
         runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where the run folders go, named after their parameters; those that are there are resumed, or taken as they are
+        when they have ended. The rows stand in a table there, which study.py runs and shows (--status), too.
+    jobs : int, optional
+        Threads at once (one for each core).
+    **parameters
+        As `collide.py --help` lists them; a list, range or array stands for several values, None for the default.
+
+    Returns
+    -------
+    DataFrame
+        analysis.table() of the runs.
+
+    Raises
+    ------
+    ParameterError
+        For a wrong name or value, before anything runs: a ValueError with the line that collide.py has.
+    RunsFailed
+        When a run failed; the others have run. Ctrl-C stops the runs, each with a checkpoint.
     """
     return _sweep(collision.KIND, "collide.py", parameters, folder, jobs)
 
@@ -54,10 +65,6 @@ def collide(folder="runs", jobs=None, **parameters):
 def compress(folder="runs", jobs=None, **parameters):
     """Run static compressions; everything as collide(), with the parameters of compress.py."""
     return _sweep(compression.KIND, "compress.py", parameters, folder, jobs)
-
-
-for _function, _kind in ((collide, collision.KIND), (compress, compression.KIND)):
-    _function.__doc__ = cleandoc(_function.__doc__) + "\n" + _kind.parameters.help_text(without=OURS)
 
 
 def _sweep(kind, script, parameters, folder, jobs):
@@ -129,11 +136,13 @@ def _run(file, jobs):
     """Have study.py run a table; RunsFailed unless all its runs have ended."""
     command = [sys.executable, STUDY, file, "-j", str(jobs)]
     of_table = Study(file, jobs)
-    with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as errors:
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
-        study = subprocess.Popen(command, stdout=said, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True)
+        study = subprocess.Popen(
+            command, stdout=output, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True
+        )
         try:
-            told = _wait(study, said.fileno(), of_table)
+            printed = _wait(study, output.fileno(), of_table)
         except BaseException:
             study.send_signal(signal.SIGINT)
             study.wait()
@@ -141,27 +150,27 @@ def _run(file, jobs):
         errors.seek(0)
         lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
     undecided = of_table.undecided()
-    if undecided not in told:
+    if undecided not in printed:
         print(f"{len(of_table.rows)} runs{undecided}")
     if study.returncode:
-        more = f", and {len(lines) - TOLD} more" if len(lines) > TOLD else ""
-        raise RunsFailed("; ".join(lines[:TOLD]) + more or f"{file}: study.py ended with status {study.returncode}")
+        more = f", and {len(lines) - NAMED} more" if len(lines) > NAMED else ""
+        raise RunsFailed("; ".join(lines[:NAMED]) + more or f"{file}: study.py ended with status {study.returncode}")
 
 
-def _wait(process, said, study):
+def _wait(process, output, study):
     """Show how far the runs are until study.py has ended; its estimate comes first, which is returned."""
-    told = ""
+    printed = ""
     with bar(len(study.rows), "runs") as shown:
         over = False
         while not over:
             begun = time.monotonic()
-            over = process.poll() is not None  # asked first, so that what has ended meanwhile is shown
-            text = "" if told else os.pread(said, 10_000, 0).decode()
+            over = process.poll() is not None  # first, so that what has ended meanwhile is shown
+            text = "" if printed else os.pread(output, 10_000, 0).decode()
             if "\n" in text:
-                told = text
+                printed = text
                 shown.write(text.rstrip("\n"))
             left = study.left()
             shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
             shown.update(sum(state.progress for state in study.states()) - shown.n)
             time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
-    return told
+    return printed

@@ -3,8 +3,8 @@
     yade -n -x worker.py NUMBER       the number of a file descriptor, one end of a multiprocessing.Pipe
 
 YADE and what runs need are loaded once. Each row is the run of a fork of this process: it has an interpreter, a scene
-and signals of its own as if YADE had been started for it, leaves nothing to the next one, and may crash. What is told
-of it: (its process id, None) when it can be stopped, and (its process id, its exit status)."""
+and signals of its own as if YADE had been started for it, leaves nothing to the next one, and may crash. What is sent
+back: (its process id, None) when it can be stopped, and (its process id, its exit status)."""
 
 import ctypes
 import gc
@@ -79,7 +79,7 @@ def _become(connection, script, arguments, threads, log):
 
 
 def _status(code):
-    """The exit status of a SystemExit; a text is told, as Python does."""
+    """The exit status of a SystemExit; a text is printed, as Python does."""
     if code is None or isinstance(code, int):
         return code or 0
     print(code, file=sys.stderr)
