@@ -48,8 +48,8 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
     >>> compression_and_velocity([-3.0, 0.0, 1.0, 2.0], [2.0, 0.0, -3.0, -3.0], 2.5)
     (0.5, 5.0)
     """
-    x = numbers("x", x, (None,))
-    x_velocity = numbers("x_velocity", x_velocity, x.shape)
+    x = numbers("x", x, (None,), gaps=True)
+    x_velocity = numbers("x_velocity", x_velocity, x.shape, gaps=True)
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")
