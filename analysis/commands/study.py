@@ -131,9 +131,6 @@ def _write(options, study, found, runs, rows):
         folder.mkdir(parents=True, exist_ok=True)
         readme = folder / "README.md"
         text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
-        if START in text:
-            text = filled(readme, text, rows, study.independent)
-            write_file(readme, text)
         if options.figures and not _is_only_input(options):
             write_file(folder / TABLE_FILE, found.csv(study))
         write_file(folder / "comparison.csv", of_table(rows).to_csv(index=False, float_format="%.10g"))
@@ -141,6 +138,8 @@ def _write(options, study, found, runs, rows):
         if options.page:
             options.page.parent.mkdir(parents=True, exist_ok=True)
             write_file(options.page, html_page(study, rows, drawn, list(provenance_lines(found.provenance))))
+        if START in text:  # last: words that no longer hold are read beside the new numbers
+            write_file(readme, filled(readme, text, rows, study.independent))
     return options.page or (readme if START in text else folder)
 
 

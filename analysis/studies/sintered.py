@@ -265,7 +265,7 @@ def _necks(runs):
         over = beside(mean("necks"), at(runs, "cut", 30, growth), at(runs, "cut", 30), np.divide)
         what = f"broken necks, V_g = {growth} m/s over BCCA, β = 0.7, 30 m/s, cut"
         yield what, over, (0.8, 1.25), "the same: 0.8 to 1.25", "5.3"
-    five = cut[[kind in FIVE for kind in zip(cut.growth_velocity, cut.neck)]]
+    five = cut[np.array([kind in FIVE for kind in zip(cut.growth_velocity, cut.neck)], dtype=bool)]
     own, one = (estimate(by_mode("Rolling"), kinds) for kinds in (five, where(cut, growth_velocity=10, neck=0.7)))
     yield "necks broken by rolling, five kinds together, cut [%]", own, (90, None), "more than 90", "5.3"
     yield "necks broken by rolling, V_g = 10 m/s, β = 0.7, cut [%]", one, None, "not of one kind", "5.3"
