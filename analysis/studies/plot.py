@@ -74,7 +74,10 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         found[name] = found[name].map(lambda value: float(value_text(value)) if isinstance(value, float) else value)
     if logarithmic is None:
         logarithmic = "x" if found[x].min() > 0 and found[x].max() >= 10 * found[x].min() else ""
-    figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
+    try:
+        figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
+    except ValueError as error:  # a pair with several runs
+        raise CannotPlot(f"{what}: {error}") from None
     if figure is None:
         raise CannotPlot(f"{what}: no run has a value")
     several = lambda n, what: f"{n} {what}{'s' * (n != 1)}"

@@ -98,6 +98,11 @@ def test_runs_that_differ_in_something_else_are_refused_unless_it_follows_from_w
     assert "8 runs" in drawn(plot("largest", chosen))[2]
 
 
+def test_a_pair_that_ran_twice_is_no_fraction(runs):
+    with pytest.raises(CannotPlot, match="a pair has several runs"):
+        plot("sticking", pandas.concat([runs, runs[:1]]).assign(run="again"))
+
+
 def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys):
     file, again = tmp_path / "new" / "a.png", ["--where", "velocity=3"]
     command = ["plot", "energy", str(cluster_folder), "--where", "velocity=1", "--out", str(file)]
