@@ -30,8 +30,8 @@ def cluster_folder(tmp_path_factory):
 
 @pytest.fixture
 def own(tmp_path):
-    """The study of STUDIES.md, for close-packed aggregates in place of BCCA ones, with runs: three of four stick at 3 m/s, and one
-    parts, which is not yet out of reach; one is undecided at 40 m/s, one has not ended."""
+    """The study of STUDIES.md, for close-packed aggregates in place of BCCA ones, with runs: three of four stick at 3
+    m/s, and one parts, which is not yet out of reach; one is undecided at 40 m/s, one has not ended."""
     code = re.search(r"```python\n(.*?)```", STUDIES.read_text(), re.DOTALL)[1]
     assert len(code.splitlines()) <= 40
     (tmp_path / "sticking.py").write_text(code.replace('packing="bcca"', 'packing="cpe"'))

@@ -18,7 +18,8 @@ MASS = 4.0 / 3.0 * pi * ICE.density * RADIUS**3
 
 
 def record(aggregate_radius, parameters=None, **others):
-    """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]; others: derived constants that differ, or are more."""
+    """The dict of run.json for ice grains of 0.1 um and an aggregate radius [m]; others: derived constants that
+    differ, or are more."""
     material = {"young": ICE.young, "poisson": ICE.poisson, "surfaceEnergy": ICE.surface_energy, "density": ICE.density}
     material |= {"criticalRolling": ICE.critical_rolling, "viscoelasticTime": 0.0}
     pair = "equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce timeUnit".split()
@@ -36,8 +37,8 @@ def chain(start, number):
 
 
 def cubic_lattice(side, axes=(0, 1, 2)):
-    """(sites (N,3) in spacings, contact pairs (M,2)) of a simple cubic lattice that fills its cell, connected with its images along
-    these axes."""
+    """(sites (N,3) in spacings, contact pairs (M,2)) of a simple cubic lattice that fills its cell, connected with
+    its images along these axes."""
     site = np.argwhere(np.ones(3 * [side]))
     ahead = (site[:, None] + np.eye(3, dtype=int)) % side @ (side**2, side, 1)
     pairs = np.stack([np.repeat(np.arange(side**3), 3), ahead.ravel()], axis=1)
@@ -46,8 +47,8 @@ def cubic_lattice(side, axes=(0, 1, 2)):
 
 
 def losing(time, energy=0.0, lost={}, touching=0, **series):
-    """A collision's history (T,): an energy [J], of which fractions {channel: part} go evenly over the time; nothing else happens but
-    what other series tell."""
+    """A collision's history (T,): an energy [J], of which fractions {channel: part} go evenly over the time; nothing
+    else happens but what other series tell."""
     zero = np.zeros(len(time))
     history = {name: lost.get(name, 0.0) * energy * time / time[-1] for name in CHANNELS}
     history["kinetic"] = energy - sum(history.values())
@@ -133,8 +134,8 @@ def pair_run(path):
 
 
 def facing(time, d, v, one=((0, 0, 0),), pairs=(), reach=0.0, touching=False):
-    """A state's dict: an aggregate `one` (N,3) with contact pairs (M,2) and of radius `reach`, and another like it, at the compression
-    length d and the mutual velocity v; touching: their first grains do."""
+    """A state's dict: an aggregate `one` (N,3) with contact pairs (M,2) and of radius `reach`, and another like it,
+    at the compression length d and the mutual velocity v; touching: their first grains do."""
     grains, shift = len(one), np.array([reach - 0.5 * d, 0, 0])
     pairs = np.reshape(pairs, (-1, 2))
     contacts = np.concatenate([pairs, pairs + grains, [[0, grains]] if touching else np.empty((0, 2))])
@@ -158,8 +159,9 @@ def flip(file, where=0.4, bits=4):
 
 
 def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, derived={}, **parameters):
-    """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding, and stick (still
-    parting at the end unless it settles) or part at half their speed. derived: as record's others. Returns the path."""
+    """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding,
+    and stick (still parting at the end unless it settles) or part at half their speed. derived: as record's others.
+    Returns the path."""
     values = {"packing": "cpe", "material": "ice", "grains": 2, "velocity": velocity, "seed": seed, "impact": 0.0}
     pair, lost = np.array([[0, 0, 0], [0, 2 * RADIUS, 0]]), {"slidingDissipation": 1.0}
     about, v = record(RADIUS, {**values, **parameters}, **derived), -0.5 if not sticks else 0.0 if settles else -0.4
@@ -177,8 +179,9 @@ def two_clusters(path):
 
 
 def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ended=True, states=3):
-    """A run folder of an aggregate `one` (N,3) with contact pairs (M,2), and another like it, that meet at velocity [m/s]: a contact
-    of their first grains forms; lost: {channel: its fraction of the motion's energy}; away: velocity at the end over the first."""
+    """A run folder of an aggregate `one` (N,3) with contact pairs (M,2), and another like it, that meet at velocity
+    [m/s]: a contact of their first grains forms; lost: {channel: its fraction of the motion's energy}; away: velocity
+    at the end over the first."""
     time = np.linspace(0.0, 4e-7, 401)
     meet, turn = 1e-7, 2e-7
     v = velocity * np.interp(time, [0, meet, turn, 3e-7], [1, 1, 0, away])
