@@ -1,9 +1,11 @@
 """Names and values from outside, as a terminal may see them."""
 
 import shlex
+import sys
 from difflib import get_close_matches
 
 LISTED = 20  # names in a message
+FAILED = 2  # exit status
 
 
 def printable(text):
@@ -28,6 +30,11 @@ def shell_line(words):
     """
     words = [str(word) for word in words]
     return " ".join(shlex.quote(word) if word.isprintable() else f"$'{_ansi_c(word)}'" for word in words)
+
+
+def complain(message):
+    """One line on stderr."""
+    print(printable(f"analysis: {message}"), file=sys.stderr, flush=True)
 
 
 def suggested(name, names, many=""):

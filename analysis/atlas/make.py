@@ -13,7 +13,7 @@ import numpy as np
 import pandas
 from scipy.spatial import cKDTree
 
-from ..commands import FAILED, complain
+from ..printable import FAILED, complain
 from ..runs.table import TableError
 from ..theory import GRAIN_RADIUS, ICE
 from ..version import version

@@ -2,18 +2,11 @@
 run."""
 
 import argparse
-import sys
 from pathlib import Path
 
-from ..printable import printable
+from ..printable import FAILED, complain, printable  # noqa: F401
 
-FAILED = 2
 RUNS = "run folder, folder that holds run folders, or a pattern such as 'runs/**'"
-
-
-def complain(message):
-    """One line on stderr."""
-    print(printable(f"analysis: {message}"), file=sys.stderr, flush=True)
 
 
 def number(is_right, must_be):
