@@ -92,7 +92,7 @@ def _draw(found, what, x, by, logarithmic):
     units = found.attrs.get("units", {})
     with_unit = lambda name: name + (f"  [{units[name]}]" if units.get(name, "") not in ("", "1") else "")
     how = {"log": logarithmic, "line": "-" if x in parameters(found) else "", "x_label": with_unit(x)}
-    words = [f"{by} {value:g}" if isinstance(value, float) else f"{by} {value}" for value in found[by]] if by else ""
+    words = [f"{by} {value_text(value)}" for value in found[by]] if by else ""
     if what == "energy":
         of_work = (found["kind"] == COMPRESSION.name).all()
         changing = [c for c in CHANNELS if c == "kinetic" or found[at_end(c)].any()]
