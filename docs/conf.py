@@ -35,8 +35,8 @@ include_patterns = [
     "analysis/gallery/*/*.md",
     "analysis/atlas/adapters/*.md",
     "contact_law/engine/*.md",
+    "tests/conformance/*.md",
 ]
-include_patterns += ["tests/conformance/*.md"]
 exclude_patterns = ["build", "runs", ".pytest_cache"]
 myst_heading_anchors = 3
 html_theme = "furo"
