@@ -2,7 +2,6 @@
 return, energy."""
 
 from dataclasses import dataclass
-from math import isclose
 from typing import Callable
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from ..measures.compression import first_compression, largest_return_speed
 from ..measures.structure import mean_coordination
 from ..runs.files import RunFolderError
-from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, same
 from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
 from ..runs.measured import derived_constants, met, outcome_of_run
 from ..runs.table import Column
@@ -84,21 +83,20 @@ CLOSURE = one("closure", "", "largest error of the energy ledger over K(0)", lam
 END = one("time", "s", "time at the end", lambda run: float(run.history["time"][-1]))
 
 
-# The constants that tell grains apart; columns, keys and labels follow from the list.
-# Name: unit and meaning of the column; symbol, unit in which it is shown, and that unit in SI.
+# The constants that tell grains apart: unit and meaning.
 _CONSTANTS = {
-    "grainRadius": ("m", "radius of a grain", "r0", " um", 1e-6),
-    "young": ("Pa", "Young's modulus", "E", " GPa", 1e9),
-    "poisson": ("", "Poisson's ratio", "nu", "", 1.0),
-    "density": ("kg/m^3", "density of a grain", "rho", " kg/m^3", 1.0),
-    "surfaceEnergy": ("J/m^2", "gamma", "gamma", " J/m^2", 1.0),
-    "criticalRolling": ("m", "xi_crit", "xi_crit", " Å", 1e-10),
-    "slidingStiffnessFactor": ("", "k_s over Wada's", "k_s factor", "", 1.0),
+    "grainRadius": ("m", "radius of a grain"),
+    "young": ("Pa", "Young's modulus"),
+    "poisson": ("", "Poisson's ratio"),
+    "density": ("kg/m^3", "density of a grain"),
+    "surfaceEnergy": ("J/m^2", "gamma"),
+    "criticalRolling": ("m", "xi_crit"),
+    "slidingStiffnessFactor": ("", "k_s over Wada's"),
 }
-*OF_MATERIAL, SLIDING = OF_GRAINS = tuple(_CONSTANTS)
+*_OF_MATERIAL, _SLIDING = OF_GRAINS = tuple(_CONSTANTS)
 GRAINS = (
-    *(constant(name, *_CONSTANTS[name][:2]) for name in OF_MATERIAL),
-    parameter(SLIDING, *_CONSTANTS[SLIDING][:2], usual=1.0),
+    *(constant(name, *_CONSTANTS[name]) for name in _OF_MATERIAL),
+    parameter(_SLIDING, *_CONSTANTS[_SLIDING], usual=1.0),
 )
 
 
@@ -111,29 +109,25 @@ def _of_paper(material, radius):
 PAPERS = {name: _of_paper(material, RADII[name]) for name, material in MATERIALS.items()}
 
 
-def other_grains(parameters):
-    """[name] of what differs from the papers' grains of that material, parameters: a mapping with material and
-    OF_GRAINS; all names for a material that they do not have."""
+def other_grains(parameters, but=()):
+    """['young = 5.4e+10', ...] of what differs from the papers' grains of a material, parameters: a mapping with
+    material and OF_GRAINS, but for the names `but`; all of a material that they do not have."""
     theirs = PAPERS.get(parameters["material"], {})
-    return [n for n in OF_GRAINS if n not in theirs or not isclose(parameters[n], theirs[n], rel_tol=1e-6)]
+    names = [n for n in OF_GRAINS if n not in but and not (n in theirs and same(parameters[n], theirs[n]))]
+    return [f"{name} = {parameters[name]:g}" for name in names]
 
 
 def require_papers_grains(run, but=()):
-    """NotMeasured, with what differs, for a RunFolder of other grains than the papers' of its material, but for the
-    names `but`: a study without grains in its key would take such runs for seeds or duplicates of others."""
-    parameters = {"material": run.parameters["material"], **row_of(GRAINS, run)}
-    others = [name for name in other_grains(parameters) if name not in but]
+    """NotMeasured for a RunFolder of other grains: a study without grains in its key would take them for the
+    paper's."""
+    others = other_grains({"material": run.parameters["material"], **row_of(GRAINS, run)}, but)
     if others:
-        values = ", ".join(f"{name} = {parameters[name]:g}" for name in others)
-        raise NotMeasured(f"{run.path}: other grains than the paper's ({values})")
+        raise NotMeasured(f"{run.path}: other grains than the paper's ({', '.join(others)})")
 
 
 def grains_text(parameters, but=()):
-    """The material, and in brackets what differs from the papers' grains of it, without the names `but`."""
-    others = []
-    for name in (name for name in other_grains(parameters) if name not in but):
-        *_, symbol, unit, si = _CONSTANTS[name]
-        others.append(f"{symbol} = {parameters[name] / si:.4g}{unit}")
+    """The material, and in brackets what differs from the papers' grains of it."""
+    others = other_grains(parameters, but)
     return parameters["material"] + (f" ({', '.join(others)})" if others else "")
 
 
@@ -164,9 +158,8 @@ def _outcome(run, row):
 def returned(history, time):
     """(largest speed [m/s] at which the halves part, its time [s]) after a time [s]; NaN where they never part, or the
     record ends before their speed falls."""
-    return tuple(
-        np.nan if value is None else value for value in largest_return_speed(history["time"], history["v"], time)
-    )
+    found = largest_return_speed(history["time"], history["v"], time)
+    return tuple(np.nan if value is None else value for value in found)
 
 
 def _changes(run, row):
@@ -183,14 +176,10 @@ OUTCOME = group(
     Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
 )
-LARGEST = group(
-    lambda run, row: (float(outcome_of_run(run).mass_fractions[0]),),
-    Column("largest_fraction", "", "fraction of the mass in the largest piece"),
-)
-_COORDINATION = group(
-    lambda run, row: (mean_coordination(len(run.start.radius), run.start.contact_pairs),),
-    Column("coordination", "", "mean number of contacts of a grain at the start"),
-)
+_largest = lambda run: float(outcome_of_run(run).mass_fractions[0])
+LARGEST = one("largest_fraction", "", "fraction of the mass in the largest piece", _largest)
+_contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
+_COORDINATION = one("coordination", "", "mean number of contacts of a grain at the start", _contacts)
 _RETURN = group(
     lambda run, row: returned(run.history, largest_compression(run)[0].time),
     Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),

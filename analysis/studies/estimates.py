@@ -12,6 +12,7 @@ import pandas
 from scipy.special import digamma
 
 from ..measures.outcome import NEVER_MET, UNDECIDED
+from ..runs.format import SAME
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ def where(runs, **values):
     """
     for name, value in values.items():
         column = runs[name].to_numpy()
-        runs = runs[column == value if isinstance(value, str) else np.isclose(column, value, rtol=1e-9, atol=0.0)]
+        runs = runs[column == value if isinstance(value, str) else np.isclose(column, value, rtol=SAME, atol=0.0)]
     return runs
 
 

@@ -42,4 +42,4 @@ def test_other_packings_are_left_out_and_other_grains_and_steps_kept_apart(tmp_p
     found, runs, err = answered(capsys, "compressed", tmp_path)
     assert "neither CPE aggregates nor spheres cut out" in err and "the same" not in err and runs == 3
     deepest = [quantity for quantity in found if quantity.startswith("compression from")]
-    assert len(deepest) == 3 and sum("ice (gamma = 0.05 J/m^2)" in quantity for quantity in deepest) == 1
+    assert len(deepest) == 3 and sum("ice (surfaceEnergy = 0.05)" in quantity for quantity in deepest) == 1

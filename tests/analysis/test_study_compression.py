@@ -75,8 +75,8 @@ def test_a_mean_and_a_fit_are_of_clusters_that_went_so_far(tmp_path):
 @pytest.mark.parametrize(
     "name, value, shown, e_roll",  # over r0^3, of K13's
     [
-        ("surfaceEnergy", 0.05, "ice (gamma = 0.05 J/m^2)", 0.5),
-        ("grainRadius", 5e-8, "ice (r0 = 0.05 um)", 4.0),
+        ("surfaceEnergy", 0.05, "ice (surfaceEnergy = 0.05)", 0.5),
+        ("grainRadius", 5e-8, "ice (grainRadius = 5e-08)", 4.0),
         ("criticalRolling", 4e-10, "ice", 0.5),
     ],
 )
