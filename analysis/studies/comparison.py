@@ -112,7 +112,8 @@ def of_table(rows):
         }
         for row in rows
     ]
-    return pandas.DataFrame(found).astype({"paper_runs": "Int64", "pairs": "Int64"})
+    whole = {"paper_runs": "Int64", "pairs": "Int64"}
+    return pandas.DataFrame(found).astype(whole) if found else pandas.DataFrame(columns=["quantity", "text"])
 
 
 def as_text(rows):
