@@ -41,7 +41,7 @@ from yade_scripts.run.parameters import CORES
 from yade_scripts.run.table import TableError
 from yade_scripts.runner import slurm
 from yade_scripts.runner.batch import LOGS, Batch, StudyBusy
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING, refusal
 from yade_scripts.runner.study import Screen, Study, full_table, live_table
 from yade_scripts.studies import tables
 
@@ -97,24 +97,23 @@ def place_of(table):
 def submit(study, at_once, sbatch, dry_run):
     """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
     states, queued = study.states_with_queue(sure=True)
-    failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
-    for row, state in failures:
-        tell(f"{row.name}: {state.note}; the other rows are submitted", SCRIPT)
-    left = [row for row, state, there in zip(study.rows, states, queued) if state.kind == WAITING and not there]
+    refused = {row.name: reason for row in study.rows if (reason := refusal(row))}
+    for name, reason in refused.items():
+        tell(f"{name}: {reason}; the other rows are submitted", SCRIPT)
+    may_run = [state.kind in (WAITING, FAILED) and row.name not in refused for row, state in zip(study.rows, states)]
+    left = [row for row, wanted, there in zip(study.rows, may_run, queued) if wanted and not there]
     slurm.require_usable(study.folder)
     if dry_run:
         if not left:
             tell("all rows have ended, or are in the queue: nothing to submit", SCRIPT)
         print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
-        return int(bool(failures))
+        return int(bool(refused))
     for job, group, tasks in slurm.submit(study.folder, left, at_once, sbatch):
         print(f"Slurm job {job}: {len(group)} rows in {tasks} tasks, {group[0].threads} threads each", flush=True)
-    others = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING, FAILED)]
-    waiting = sum(state.kind == WAITING for state in states) - len(left)
-    print(
-        f'{printable(study.name)}: {len(states)} rows, {", ".join(others)}, {waiting} in the queue before, {len(left)} submitted'
-    )
-    return int(bool(failures))
+    counts = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING)]
+    counts += [f"{len(refused)} failed, {sum(queued)} in the queue before, {len(left)} submitted"]
+    print(f"{printable(study.name)}: {len(states)} rows, {', '.join(counts)}")
+    return int(bool(refused))
 
 
 def run(study, stop):
@@ -200,7 +199,6 @@ def main(arguments):
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
-            study.forget_failures()
             return submit(study, options.jobs, options.sbatch, options.dry_run)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
         tell(f"{error}{hint(table)}", SCRIPT)

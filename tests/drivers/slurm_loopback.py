@@ -43,7 +43,8 @@ class NoSlurm(SystemExit):
 
 
 class Loopback:
-    """With it the commands of Slurm find this node, by .environment. folder: an empty one, of a short path (sockets)."""
+    """With it the commands of Slurm find this node, by .environment. folder: an empty one, of a short path
+    (sockets)."""
 
     def __init__(self, folder):
         self.folder, self._daemons = Path(folder), []

@@ -1,11 +1,12 @@
-"""A dozen rows as a job array of Debian's Slurm on this machine (slurm_loopback.py), and the same rows by the local runner.
+"""A dozen rows as a job array of Debian's Slurm on this machine (slurm_loopback.py), and the same rows by the local
+runner.
 
     python3 tests/drivers/try_slurm.py      root; some five minutes on two cores
 
-While the first of three long rows runs, the task is requeued; during the second it gets the signal that Slurm sends before a
-time limit; the run of the third is killed; each after its first checkpoint. One row fails, eight end. "Elsewhere" is a process
-that has another host name and another start of the machine. Exit status: 0 when all was as it must be, otherwise 1.
-"""
+While the first of three long rows runs, the task is requeued; during the second it gets the signal that Slurm sends
+before a time limit; the run of the third is killed; each after its first checkpoint. One row fails, eight end.
+"Elsewhere" is a process that has another host name and another start of the machine. Exit status: 0 when all was as
+it must be, otherwise 1."""
 
 import os
 import signal

@@ -16,7 +16,8 @@ TOP = os.path.dirname(
     os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0] if __name__ == "__main__" else __file__)))
 )
 KILLED, DISK_FULL = "killed", "disk full"
-MODULES = "contact_law yade_scripts.experiments.collision yade_scripts.run.folder yade_scripts.run.report yade_scripts.run.scene"
+OF_RUNS = ["folder", "report", "scene"]
+MODULES = ["contact_law", "yade_scripts.experiments.collision", *(f"yade_scripts.run.{name}" for name in OF_RUNS)]
 COLLIDE = "yade_scripts/collide.py"
 RECORDER = "checkpoint/recorder.npz"
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
@@ -49,7 +50,7 @@ class Forks:
         from yade_server import YadeServer
 
         self.folder = Path(folder)
-        self._yade = YadeServer(MODULES.split(), {**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self._yade = YadeServer(MODULES, {**os.environ, "OPENBLAS_NUM_THREADS": "1"})
         self.close = self._yade.close
 
     def run(self, arguments, run, call=0, fault=KILLED):
@@ -57,7 +58,8 @@ class Forks:
         return self.call(COLLIDE, [*arguments, f"out={run.name}"], run.parent, call, fault)
 
     def call(self, program, arguments, folder, call=0, fault=KILLED):
-        """The same of a program (a script's path in the repository, or a module) in a folder; call: number of that which fails."""
+        """The same of a program (a script's path in the repository, or a module) in a folder; call: number of that
+        which fails."""
         request = dict(program=program, arguments=list(arguments), folder=str(folder), call=call, fault=fault)
         (self.folder / "stdout").unlink(missing_ok=True)
         status = self._yade.run(__file__, self.folder, arguments=[json.dumps(request)])

@@ -15,7 +15,8 @@ from running import small_disk
 from analysis.runs.files import is_unfinished
 
 RESUME, OVERWRITE = "resume=1", "overwrite=1"
-# What the call that meets a fault is given, what the run that was in the folder before (None: none) and whether that was killed.
+# What the call that meets a fault is given, what the run that was in the folder before (None: none) and whether that
+# was killed.
 SCENES = {
     "a new run": (RUN, None, False),
     "a resumed run": (RUN + (RESUME,), RUN, True),

@@ -21,8 +21,9 @@ def start(homo, drag, rate=1e-3):
 
 @pytest.mark.parametrize("homo,drag", [(0, 0.0), (0, 2e-12), (1, 0.0), (2, 0.0)])
 def test_functors_then_engine_then_functors_is_one_run(homo, drag):
-    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's exponential).
-    NewtonIntegrator keeps the velocity gradient that it gave the grains; a new one must be told (prevVelGrad)."""
+    """To rounding, with one small step in an O.step (with more, the engine's cell goes along chords of YADE's
+    exponential). NewtonIntegrator keeps the velocity gradient that it gave the grains; a new one must be told
+    (prevVelGrad)."""
     start(homo, drag)
     O.run(400, True)
     straight, contacts, size, work = (

@@ -1,7 +1,8 @@
 """A checkpoint taken in mid-contact resumes to the same bits, in every format YADE writes.
 
-YADE adds up the forces on a grain in the order of its interaction container, which contacts that break shuffle differently before and after loading;
-InteractionLoop(loopOnSortedInteractions=True) makes the order that of the ids, and with it the bits."""
+YADE adds up the forces on a grain in the order of its interaction container, which contacts that break shuffle
+differently before and after loading; InteractionLoop(loopOnSortedInteractions=True) makes the order that of the ids,
+and with it the bits."""
 
 import pickle
 

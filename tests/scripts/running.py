@@ -46,7 +46,8 @@ def collide(folder, *arguments, **more):
 
 
 def completed(folder, *arguments, script=COLLIDE):
-    """(run.json, history) of a run, in the folder run, that comes to its end and has nothing to say. The folder is made if need be."""
+    """(run.json, history) of a run, in the folder run, that comes to its end and has nothing to say. The folder is
+    made if need be."""
     os.makedirs(folder, exist_ok=True)
     done = call(folder, "yade", "-n", "-x", script, *arguments, "out=run")
     assert done.returncode == 0 and messages(done) == [], done.stderr
@@ -116,7 +117,8 @@ def waits_for_a_lock(pid):
 
 
 def stop_midway(folder, arguments, number=signal.SIGKILL, script=COLLIDE, after=0.0):
-    """The process of a run, in the folder run, that was sent a signal `after` seconds after its first checkpoint, before its end."""
+    """The process of a run, in the folder run, that was sent a signal `after` seconds after its first checkpoint,
+    before its end."""
     process = start(folder, "yade", "-n", "-x", script, *arguments, "out=run")
     checkpoint = folder / "run" / "checkpoint" / "recorder.npz"
     wait_for(lambda: checkpoint.exists() or process.poll() is not None)

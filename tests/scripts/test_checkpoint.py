@@ -14,7 +14,9 @@ RUN = ("radius=10", "velocity=10", "duration=400e-9", "threads=1")
 OFTEN = "checkpointInterval=0.05"
 KINDS = {
     "necks": (COLLIDE, "packing=bcca grains=512 planar=1 neck=0.3 velocity=60 duration=300e-9 threads=1", 0.0),
-    "shorter steps": (COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06", 0.0),
+    "shorter steps": (
+        COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06", 0.0
+    ),
     "a step that the run chooses": (COLLIDE, "radius=10 velocity=10 duration=300e-9 threads=1 stepFraction=auto", 0.0),
     # one that is compressed or stretched, with an end that follows from the history
     "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x", 0.5),
@@ -26,7 +28,8 @@ KINDS = {
 
 @pytest.mark.parametrize("name", KINDS)
 def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
-    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes, and what a writer that was killed has left."""
+    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes, and what a writer
+    that was killed has left."""
     script, arguments, after = KINDS[name]
     arguments = arguments.split()
     completed(tmp_path / "straight", *arguments, script=script)
@@ -63,8 +66,8 @@ def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
 
 
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
-    """Its line has the command; what the command says of other parameters, or of no more time, is refused. A row of a table is its run if that
-    is as long as it wants, and goes on with it otherwise."""
+    """Its line has the command; what the command says of other parameters, or of no more time, is refused. A row of a
+    table is its run if that is as long as it wants, and goes on with it otherwise."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")

@@ -21,8 +21,8 @@ def run_analysis(folder, *arguments):
 
 @pytest.fixture(scope="module")
 def here(tmp_path_factory):
-    """A folder of this name, in which a table of this name and a run in a folder of this name came to their ends, by the suite behind
-    such a name."""
+    """A folder of this name, in which a table of this name and a run in a folder of this name came to their ends, by
+    the suite behind such a name."""
     folder = tmp_path_factory.mktemp("names") / NAME
     folder.mkdir()
     (folder / f"{NAME}.table").write_text(TABLE)

@@ -41,7 +41,8 @@ def test_files_are_whole_and_a_write_that_fails_leaves_them_as_they_were(tmp_pat
 
 
 def test_an_ended_run_is_replaced_only_with_overwrite_and_another_without(tmp_path):
-    """One that was killed between the mark of its end and the removal of its checkpoint has both: it is replaced, not resumed."""
+    """One that was killed between the mark of its end and the removal of its checkpoint has both: it is replaced, not
+    resumed."""
     path, other, both = (ended_run(tmp_path / name) for name in ("run", "other", "both"))
     with pytest.raises(RunFolderError, match="holds a run that has ended; must be another folder"):
         RunFolder(str(path))

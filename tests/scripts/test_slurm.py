@@ -1,4 +1,5 @@
-"""Job arrays of Slurm, without Slurm: their scripts, what is submitted, and what a task does. `make test-slurm` has the real one."""
+"""Job arrays of Slurm, without Slurm: their scripts, what is submitted, and what a task does. `make test-slurm` has
+the real one."""
 
 import os
 import signal

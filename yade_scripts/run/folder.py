@@ -34,7 +34,8 @@ from yade_scripts.run import checkpoint
 
 # Names of files, relative to the folder, that runs write; nothing else is ever removed.
 _OF_RUNS = re.compile(
-    rf"{RUN_FILE}|{ENDED_FILE}|{HISTORY_FILE}|{STATES_FOLDER}/\d{{6,}}\.npz|{checkpoint.RECORDER}|{CHECKPOINT_FOLDER}/scene-\d+\.yade"
+    rf"{RUN_FILE}|{ENDED_FILE}|{HISTORY_FILE}|{STATES_FOLDER}/\d{{6,}}\.npz|"
+    rf"{checkpoint.RECORDER}|{CHECKPOINT_FOLDER}/scene-\d+\.yade"
 )
 
 
@@ -78,8 +79,8 @@ class RunFolder:
             )
         if stopped and not (resume or overwrite):
             raise RunFolderError(
-                f"out = {self.path}: holds a run that was stopped, with a checkpoint; must be another folder, or resume=1 "
-                "(to continue it) or overwrite=1 (to start again)"
+                f"out = {self.path}: holds a run that was stopped, with a checkpoint; must be another folder, "
+                "or resume=1 (to continue it) or overwrite=1 (to start again)"
             )
         if stopped and resume and not (overwrite and ended):
             self.checkpoint = checkpoint.Checkpoint(self.path)

@@ -25,9 +25,9 @@ class Estimate(NamedTuple):
 class Scene:
     """A run that is ready to be built in YADE.
 
-    control(recorder, state) is called after each sample, may change the scene (a cell's velGrad), and is true when the run
-    is at its end before `duration` is over. It must follow from the recorder's history, the state and the scene alone, so
-    that a run resumes. States are those of contact_law.snapshot(), with `aggregate`."""
+    control(recorder, state) is called after each sample, may change the scene (a cell's velGrad), and is true when the
+    run is at its end before `duration` is over. It must follow from the recorder's history, the state and the scene
+    alone, so that a run resumes. States are those of contact_law.snapshot(), with `aggregate`."""
 
     parameters: Any  # of the kind, complete, with a duration and a number as stepFraction
     constants: Mapping  # of a contact, as run.scene.pair_constants() gives them

@@ -49,8 +49,8 @@ class RunParameters(Parameters):
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),
-        "of the fused engine, at most the machine's cores (those that yade -j or yade-batch set); more than 2 are of use "
-        "from 24,000 grains on, more than 4 from 48,000 and so on; the functors have those of YADE",
+        "of the fused engine, at most the machine's cores (those that yade -j or yade-batch set); more than 2 are of "
+        "use from 24,000 grains on, more than 4 from 48,000 and so on; the functors have those of YADE",
         of_consequence=False,
     )
     states: int = parameter(
