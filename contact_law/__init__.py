@@ -46,7 +46,7 @@ def _load(yade):
         raise ImportError(f"contact_law isn't built: {LIBRARY} is missing; run 'make' in {TOP}")
     with open(os.path.join(TOP, "build/yade.list")) as file:
         described = file.read().split()
-    running = [yade.config.version, *yade.config.features]
+    running = " ".join([yade.config.version, *yade.config.features]).split()
     if running != described:  # before anything of the library is touched
         other = " ".join(sorted(set(running) ^ set(described)))
         raise ImportError(

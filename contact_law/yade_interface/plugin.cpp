@@ -20,8 +20,9 @@ bool factory::isDescribedYade()
 		try {
 			if (Py_IsInitialized()) {
 				const py::object config = py::import("yade.config");
-				running = py::extract<std::string>(
-				        py::str(" ").join(py::make_tuple(config.attr("version")) + py::tuple(config.attr("features"))));
+				const py::object words = py::make_tuple(config.attr("version")) + py::tuple(config.attr("features"));
+				const py::str blank(" "); // one between two words, as the Makefile has it
+				running = py::extract<std::string>(blank.join(blank.join(words).attr("split")()));
 			}
 		} catch (py::error_already_set&) {
 			PyErr_Clear();
