@@ -159,7 +159,7 @@ def fit_moduli(runs, offset, start=START):
     means, number = points.mean(), points.size().to_numpy()
     radius, velocity = (means.index.get_level_values(name).to_numpy() for name in ("radius", "velocity"))
     scatter = points.std().fillna(0.0).to_numpy().T
-    scatter[scatter < 1e-12 * np.abs(means.to_numpy().T)] = 0.0
+    scatter = np.where(scatter < 1e-12 * np.abs(means.to_numpy().T), 0.0, scatter)
     error = [smoothed_scatter(velocity, own, number) / np.sqrt(number) for own in scatter]
     if len(np.unique(velocity)) < 3 or not np.isfinite([offset, *np.ravel(error)]).all():
         return nan, nan
