@@ -20,7 +20,7 @@ def answer():
     """Read `call` in this folder (pickle: file, name and arguments of the function), and write `answer` (pickle: what
     it returned).
 
-    Whatever it raises is written to stderr, with the variables of the last function, and ends the process with status 1.
+    Whatever it raises goes to stderr, with the variables of the last function, and ends the process with status 1.
     """
     place = os.path.abspath("answer")  # the function may go to another folder
     with open("call", "rb") as file:
