@@ -265,7 +265,6 @@ test-sanitizers: NEEDS := clang-14 libclang-rt-14-dev libomp-14-dev llvm-14
 test-slurm: NEEDS := slurm-wlm munge
 test-slurm: DRIVER := try_slurm
 
-# The collisions of a paper, what is left of them, and their analysis. JOBS: runs at once.
 SIZE  ?= desk
 JOBS  ?= $(shell nproc)
 STUDY ?= elastoplastic
