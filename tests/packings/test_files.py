@@ -79,7 +79,7 @@ def test_what_is_no_packing_gives_one_line(tmp_path, content):
         (PAIR * 0.4, [RADIUS] * 2, "must be less than the smaller radius"),
         (PAIR[:1], [RADIUS], "N >= 2"),
         (PAIR * 0.99, [RADIUS] * 2, "must be at most 1.1 of the equilibrium"),
-        (PAIR * 6, [6 * RADIUS] * 2, "or grainRadius = 6e-07 (one for all packings of a run)"),
+        (PAIR * 6, [6 * RADIUS] * 2, "made of grains with grainRadius = 6e-07, not 1e-07"),
     ],
 )
 def test_grains_that_no_run_can_start_from_give_one_line(tmp_path, position, radius, message):
@@ -105,7 +105,7 @@ def pair_of(material, path, *names, **parameters):
     "material, names, message",
     [
         (SOFTER, OF_CONTACTS, "made of grains with surfaceEnergy = 0.02, not 0.1"),
-        (SOFTER, (), "its contacts overlap by 3.49e-10 m, those of these grains at rest by 1.02e-09 m"),
+        (SOFTER, (), "made of grains with overlap = 3.49e-10, not 1.02e-09"),
         (AS_DEEP, OF_CONTACTS, "made of grains with young = 3.5e+09, not 7e+09"),
     ],
 )

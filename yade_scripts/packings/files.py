@@ -29,6 +29,7 @@ from yade_scripts.packings.packing import (
 SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
 OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
 DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
+CONTENT = "an .npz with position, radius, seed, parameters, as make_packing.py writes it"
 
 
 def save(path, packing):
@@ -56,32 +57,14 @@ def is_packing(path):
 
 
 def load(path):
-    """Read a packing that save() wrote.
-
-    Raises
-    ------
-    PackingError
-        When the file is missing or is none, or a grain reaches the centre of another one.
-    """
-    if os.path.exists(path) and not zipfile.is_zipfile(path):
-        raise PackingError(
-            f"{path}: not a packing; must be an .npz that make_packing.py wrote, as from another program's file by "
-            "make_packing.py a.npz from=FILE unit=um"
-        )
+    """Read a packing that save() wrote; PackingError when it is none, or a grain reaches the centre of another one."""
     try:
         spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
-        parameters = json.loads(about["parameters"])
-        if not isinstance(parameters, dict):
-            raise ValueError("parameters is no JSON object")
-        if not len(spheres["radius"]):
-            raise ValueError("holds no grain")
-        packing = Packing(**spheres, seed=int(about["seed"]), parameters=parameters)
-    except (RunFolderError, ValueError, TypeError, OverflowError, RecursionError) as error:
+        packing = Packing(**spheres, seed=int(about["seed"]), parameters=dict(json.loads(about["parameters"])))
+    except (RunFolderError, ValueError, TypeError) as error:
         reason = " ".join(str(error).removeprefix(f"{path}: ").split())
-        raise PackingError(
-            f"{path}: not a packing ({reason}); must be an .npz with position, radius, seed, parameters"
-        ) from None
-    pairs = touching(packing.position, packing.radius, -packing.radius.min())
+        raise PackingError(f"{path}: not a packing ({reason}); must be {CONTENT}") from None
+    pairs = touching(packing.position, packing.radius, -packing.radius.min(initial=0.0))
     overlap = -surface_gaps(packing.position, packing.radius, pairs)
     for number in np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))[:1]:
         first, second = pairs[number]
@@ -118,8 +101,8 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
     packing = load(path)
     if packing.grains < 2:
         raise PackingError(f"{path}: holds {packing.grains} grains; must be N >= 2")
-    _require_material(path, packing, grain_radius, grains)
-    _require_rest(path, packing, grain_radius, overlap)
+    _require_material(path, packing, grain_radius, overlap, grains)
+    _require_shallow(path, packing, grain_radius, overlap)
     if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
         raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
     found = moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
@@ -127,8 +110,8 @@ def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
 
 
 def sum_of_file(path):
-    """SHA-256 of the grains in a packing's file; None where it can't be read. A run keeps it, to notice another
-    file."""
+    """SHA-256 of the grains in a packing's file, which a run keeps, to notice another file; None where it can't be
+    read."""
     try:
         return _sum_as_written(path, os.stat(path).st_mtime_ns)
     except (OSError, PackingError):
@@ -144,29 +127,27 @@ def _sum(packing):
     return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
 
 
-def _require_material(path, packing, grain_radius, grains):
-    """The file's grains must be those of the run; contacts of others would pull or press from the start on."""
-    made_of = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
-    wanted = {"grainRadius": grain_radius, **{name: getattr(grains, name, None) for name in OF_CONTACTS}}
-    for name, value in wanted.items():
-        stored = _number(path, made_of, name)
-        if None in (stored, value) or np.isclose(stored, value, rtol=1e-6, atol=0):
+def _require_material(path, packing, grain_radius, overlap, grains):
+    """The file's grains must be those of the run: contacts of others would pull or press from the start on. A cpe
+    packing may have been made loose on purpose (initialOverlap)."""
+    stored = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
+    wanted = {
+        "grainRadius": (grain_radius, 1e-6),
+        **{name: (getattr(grains, name, None), 1e-6) for name in OF_CONTACTS},
+    }
+    if stored.get("packing") != "cpe":
+        wanted["overlap"] = overlap, AT_REST
+    for name, (value, tolerance) in wanted.items():
+        if None in (stored.get(name), value) or np.isclose(stored[name], value, rtol=tolerance, atol=0):
             continue
         raise PackingError(
-            f"{path}: made of grains with {name} = {stored:g}, not {value:g}; must be a packing of such grains, or "
-            f"{name} = {stored:g} (one for all packings of a run)"
+            f"{path}: made of grains with {name} = {stored[name]:.3g}, not {value:.3g}; must be a packing of such "
+            f"grains, or the run's grains be those (one material for all packings of a run)"
         )
 
 
-def _require_rest(path, packing, grain_radius, overlap):
-    """Contacts must be at rest by the file's own overlap, and none far too deep. A cpe packing may have been made
-    loose on purpose (initialOverlap)."""
-    stored = None if packing.parameters.get("packing") == "cpe" else _number(path, packing.parameters, "overlap")
-    if stored is not None and abs(stored - overlap) > AT_REST * overlap:
-        raise PackingError(
-            f"{path}: its contacts overlap by {stored:.3g} m, those of these grains at rest by {overlap:.3g} m; must "
-            "be a packing of grains of the same material"
-        )
+def _require_shallow(path, packing, grain_radius, overlap):
+    """No contact may be far deeper than at rest."""
     pairs = contacts(packing)
     if not len(pairs):
         return
@@ -178,11 +159,3 @@ def _require_rest(path, packing, grain_radius, overlap):
             f"{path}: grains {pairs[worst, 0]} and {pairs[worst, 1]} overlap by {deep[worst]:.3g} m; must be at most "
             f"{DEEPEST:g} of the equilibrium overlap of {at_rest[worst]:.3g} m"
         )
-
-
-def _number(path, parameters, name):
-    """A number among a packing's parameters, or None."""
-    value = parameters.get(name)
-    if value is not None and (isinstance(value, bool) or not isinstance(value, (int, float))):
-        raise PackingError(f"{path}: {name} among its parameters is {value!r}; must be a number")
-    return value

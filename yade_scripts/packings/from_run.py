@@ -6,7 +6,7 @@ twisted.
 """
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -19,7 +19,7 @@ from yade_scripts.packings.packing import Packing, PackingError, centred, larges
 from yade_scripts.packings.rest import unpressed
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
 
-NO_RUN = (OSError, ValueError, KeyError, TypeError, AttributeError, RunFolderError)  # what reading one may raise
+NO_RUN = (OSError, ValueError, KeyError, TypeError, RunFolderError)  # what reading one may raise
 
 
 @dataclass(frozen=True)
@@ -32,18 +32,18 @@ class CutParameters(Parameters):
 
 @dataclass(frozen=True)
 class PeriodicState:
-    """A state of a compression.
+    """A state of a compression; lengths in m, SI.
 
     Attributes
     ----------
     position, radius, contact_pairs, cell_size : array
-        (N, 3), (N,), (M, 2), (3,); lengths in m.
+        (N, 3), (N,), (M, 2), (3,).
     overlap : float
-        Of two grains at rest [m].
+        Of two grains at rest.
     material : dict
-        Values of OF_CONTACTS, SI, as far as they are known.
+        Values of OF_CONTACTS, as far as they are known.
     axis, walls
-        Between walls: their axis and places (2,) [m].
+        Between walls: their axis and places (2,).
     """
 
     position: np.ndarray
@@ -76,16 +76,16 @@ def read_periodic_state(path):
     """PeriodicState of RUN/states/NNNNNN.npz; raises PackingError when it is none."""
     try:
         record = record_of_state(path)
-        state = read_state(path, COMPRESSION, record.get("format", FORMAT))
-        derived = record["derived"]
+        state, derived = read_state(path, COMPRESSION, record.get("format", FORMAT)), record["derived"]
         overlap = float(derived["equilibriumOverlap"])
         material = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
+        if state.cell_size is None:
+            raise ValueError("not of a periodic cell")
     except NO_RUN as error:
+        reason = " ".join(str(error).split())
         raise PackingError(
-            f"from = {path}: {_reason(error)}; must be a state of a compression, RUN/states/NNNNNN.npz"
+            f"from = {path}: {reason}; must be a state of a compression, RUN/states/NNNNNN.npz"
         ) from None
-    if state.cell_size is None:
-        raise PackingError(f"from = {path}: not of a periodic cell; must be a state of a compression")
     walls = () if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
     return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material, *walls)
 
@@ -135,31 +135,29 @@ def cut(state, parameters, index=0):
     kept, pairs = largest_cluster(len(inside), _pairs_within(position, state.contact_pairs, inside))
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
-    position, radius = position[inside[kept]], state.radius[inside[kept]]
-    moved = unpressed(position, radius, pairs, grain_radius, state.overlap)
-    about = dict(
-        packing="compressed",
-        aggregateRadius=reach,
-        grainRadius=grain_radius,
-        filling=len(kept) / parameters.radius**3,
-        overlap=state.overlap,
-        **state.material,
-        index=index,
-        dropped=len(inside) - len(kept),
-        largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
-    )
+    about = dict(packing="compressed", aggregateRadius=reach, filling=len(kept) / parameters.radius**3)
+    about |= dict(state.material, index=index, dropped=len(inside) - len(kept))
+    packing = Packing(position[inside[kept]], state.radius[inside[kept]], parameters.seed, about)
+    rested = _at_rest(packing, pairs, grain_radius, state.overlap)
     orientation = Rotation.random(random_state=stream)
-    return Packing(orientation.apply(moved - moved.mean(axis=0)), radius, parameters.seed, about)
+    return replace(rested, position=orientation.apply(rested.position - rested.position.mean(axis=0)))
+
+
+def _at_rest(packing, pairs, grain_radius, overlap):
+    """The packing with its contacts at rest, and among its parameters what that took."""
+    position = unpressed(packing.position, packing.radius, pairs, grain_radius, overlap)
+    motion = float(np.linalg.norm(position - packing.position, axis=1).max())
+    about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
+    return replace(packing, position=position, parameters=about)
 
 
 def _pairs_within(position, pairs, inside):
     """Rows (M, 2) among `inside` of the contacts between those grains that do not reach across the cell."""
     row = np.full(len(position), -1)
     row[inside] = np.arange(len(inside))
-    chosen = row[pairs]
     apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     near = apart < 3 * np.median(apart) if len(apart) else np.zeros(0, bool)
-    return chosen[(chosen >= 0).all(axis=1) & near]
+    return row[pairs][(row[pairs] >= 0).all(axis=1) & near]
 
 
 def largest_piece_of_run(path):
@@ -167,37 +165,27 @@ def largest_piece_of_run(path):
     PackingError."""
     try:
         run = open_run(path)
-        state, overlap = run.last, float(run.derived["equilibriumOverlap"])
-        grain_radius = float(run.derived["grainRadius"])
+        state = run.last
+        overlap, grain_radius = float(run.derived["equilibriumOverlap"]), float(run.derived["grainRadius"])
+        if state.cell_size is not None or state.contact_bonded.any():
+            raise ValueError("periodic, or with sintered bonds")
     except NO_RUN as error:
-        raise PackingError(f"after = {path}: {_reason(error)}; must be a run folder") from None
-    if state.cell_size is not None or state.contact_bonded.any():
-        raise PackingError(f"after = {path}: periodic, or with sintered bonds; must be a collision without them")
-    inside, pairs = largest_cluster(len(state.radius), state.contact_pairs)
-    position, radius = state.position[inside], state.radius[inside]
-    moved = unpressed(position, radius, pairs, grain_radius, overlap)
-    about = dict(
-        packing="collided",
-        grainRadius=grain_radius,
-        overlap=overlap,
-        of=len(state.radius),
-        largestMotion=float(np.linalg.norm(moved - position, axis=1).max()),
-    )
-    return Packing(centred(moved, radius), radius, int(run.parameters.get("seed", 0)), about)
+        reason = " ".join(str(error).split())
+        raise PackingError(f"after = {path}: {reason}; must be a run folder of a collision without bonds") from None
+    kept, pairs = largest_cluster(len(state.radius), state.contact_pairs)
+    about = {"packing": "collided", "of": len(state.radius)}
+    packing = Packing(state.position[kept], state.radius[kept], int(run.parameters.get("seed", 0)), about)
+    rested = _at_rest(packing, pairs, grain_radius, overlap)
+    return replace(rested, position=centred(rested.position, rested.radius))
 
 
 def turned(packing, seed, index=0):
     """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in
     it."""
     stream = random_stream(seed, index)
-    if np.any(packing.position[:, 2] != 0):
-        rotation = Rotation.random(random_state=stream)
-    else:
-        rotation = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)])
-    position = rotation.apply(packing.position)
-    position[:, 2] *= np.any(packing.position[:, 2] != 0)
+    planar = not np.any(packing.position[:, 2])
+    turn = (
+        Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)]) if planar else Rotation.random(random_state=stream)
+    )
+    position = turn.apply(packing.position) * (1, 1, 0 if planar else 1)
     return Packing(position, packing.radius, seed, {**packing.parameters, "index": index})
-
-
-def _reason(error):
-    return " ".join(str(error).split())

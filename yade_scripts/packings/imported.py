@@ -7,7 +7,6 @@ gap between them is within what the digits hide; then rest.py moves all of them 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
 from yade_scripts import materials
@@ -65,16 +64,6 @@ class ImportParameters(GrainParameters):
     )
 
 
-@dataclass(frozen=True)
-class Scaled:
-    """Spheres in m."""
-
-    position: np.ndarray  # (N, 3)
-    radius: np.ndarray  # (N,)
-    tolerance: float  # gap up to which they touch
-    grain_radius: float  # by which they are known
-
-
 def imported(path, texts):
     """The aggregate of another program, its contacts at rest.
 
@@ -97,33 +86,30 @@ def imported(path, texts):
     """
     parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
-    scaled = _scaled(path, spheres, parameters, "grainRadius" in texts)
-    parameters = parameters.changed(grainRadius=scaled.grain_radius)
+    position, radius, tolerance = _in_metres(path, spheres, parameters, "grainRadius" in texts)
+    grain_radius = float(np.sort(radius)[len(radius) // 2])  # by which they are known
+    parameters = parameters.changed(grainRadius=grain_radius)
     constants = materials.pair_constants(parameters)
     materials.require_small_contacts(constants)
     overlap = constants["equilibriumOverlap"]
-    pairs = _contacts_in_file(path, scaled, overlap)
-    rest = at_rest(scaled.position, scaled.radius, pairs, scaled.grain_radius, overlap)
+    pairs = _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap)
+    rest = at_rest(position, radius, pairs, grain_radius, overlap)
     if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
         first, second = rest.pairs[rest.worst]
         raise PackingError(
             f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
             f"{1 + rest.deviation[rest.worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
         )
-    moved = float(np.linalg.norm(rest.position - scaled.position, axis=1).max())
+    moved = float(np.linalg.norm(rest.position - position, axis=1).max())
     about = dict(
-        packing="imported",
-        grainRadius=scaled.grain_radius,
-        overlap=overlap,
-        **{name: getattr(parameters, name) for name in OF_CONTACTS},
-        tolerance=scaled.tolerance,
-        largestMotion=moved,
+        packing="imported", grainRadius=grain_radius, overlap=overlap, tolerance=tolerance, largestMotion=moved
     )
-    packing = Packing(centred(rest.position, scaled.radius), scaled.radius, 0, about)
+    about |= {name: getattr(parameters, name) for name in OF_CONTACTS}
+    packing = Packing(centred(rest.position, radius), radius, 0, about)
     lines = [
-        f"{path}: {spheres.about}, {len(scaled.radius)} grains; those touch that are at most "
-        f"{scaled.tolerance / scaled.radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
-        f"brought to rest: grains moved by up to {moved / scaled.grain_radius:.2g} grain radii, contacts are within "
+        f"{path}: {spheres.about}, {len(radius)} grains; those touch that are at most "
+        f"{tolerance / radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
+        f"brought to rest: grains moved by up to {moved / grain_radius:.2g} grain radii, contacts are within "
         f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, "
         f"{len(rest.pairs) - len(pairs)} more came about",
     ]
@@ -131,20 +117,18 @@ def imported(path, texts):
 
 
 def grains_of(packing, material=None):
-    """Arguments of a run whose grains are those of an imported packing, where they are not those of `material`, or of
-    the material that is most like them."""
+    """Arguments of a run whose grains are those of an imported packing: `material`, or the one that is most like them,
+    and what differs from it."""
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
 
     def others(usual):
         usual = materials.MATERIALS[usual]
-        return [
-            f"{name}={x:.10g}"
-            for name, x in made_of.items()
-            if not np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0)
-        ]
+        same = {name: np.isclose(x, getattr(usual, name), rtol=1e-6, atol=0) for name, x in made_of.items()}
+        return [f"{name}={x:.10g}" for name, x in made_of.items() if not same[name]]
 
     found = material or min(materials.MATERIALS, key=lambda name: len(others(name)))
-    return [f"material={found}"] * (material is not None or found != ImportParameters().material) + others(found)
+    named = material is not None or found != ImportParameters().material
+    return [f"material={found}"] * named + others(found)
 
 
 def _material_of(path):
@@ -155,7 +139,7 @@ def _material_of(path):
         return {}
     else:
         try:
-            made_of = dict(record_of_state(path)["derived"])
+            made_of = record_of_state(path)["derived"]
         except NO_RUN as error:
             reason = " ".join(str(error).split())
             raise PackingError(
@@ -164,66 +148,51 @@ def _material_of(path):
     return {name: made_of[name] for name in OF_CONTACTS if name in made_of}
 
 
-def _scaled(path, spheres, parameters, grain_radius_given):
+def _in_metres(path, spheres, parameters, grain_radius_given):
+    """(position (N, 3), radius (N,), gap up to which grains touch), in m."""
     unit = parameters.unit or spheres.unit or "m"
     if spheres.unit and unit != spheres.unit:
         raise ParameterError(f"unit = {unit}: {path} is in {spheres.unit}; must be left out")
     if grain_radius_given and unit != OF_RADIUS:
         raise ParameterError(f"grainRadius: follows from the file with unit = {unit}; must be left out")
     radius = spheres.radius
-    if radius is None and parameters.radius is None and unit != OF_RADIUS:
-        raise ParameterError(f"radius: not given, and {path} has no radii; must be that of its grains [{unit}]")
     if radius is not None and parameters.radius is not None:
         raise ParameterError(f"radius = {parameters.radius:g}: {path} has radii of its own; must be left out")
     if radius is None:
+        if parameters.radius is None and unit != OF_RADIUS:
+            raise ParameterError(f"radius: not given, and {path} has no radii; must be that of its grains [{unit}]")
         radius = np.full(len(spheres.position), parameters.radius or 1.0)
-    if unit == OF_RADIUS:
-        in_unit = 1 / parameters.grainRadius
-    else:
-        in_unit = IN_A_METRE[unit]
+    in_unit = 1 / parameters.grainRadius if unit == OF_RADIUS else IN_A_METRE[unit]
+    if unit != OF_RADIUS:
         _require_plausible(path, float(np.median(radius)), unit)
     hidden = (np.sqrt(3.0) + 1.0) * spheres.resolution
     smallest = radius.min()
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
     position, radius = (np.asarray(lengths / in_unit, dtype=float) for lengths in (spheres.position, radius))
-    return Scaled(position, radius, gap / in_unit, float(np.sort(radius)[len(radius) // 2]))
+    return position, radius, float(gap / in_unit)
 
 
 def _require_plausible(path, radius, unit):
+    """Raise PackingError for grains of a size [unit] that dust does not have."""
     smallest, largest = PLAUSIBLE
-    if smallest <= radius / IN_A_METRE[unit] <= largest:
-        return
     fits = [f"unit={other}" for other, number in IN_A_METRE.items() if smallest <= radius / number <= largest]
-    raise PackingError(
-        f"{path}: grains of {radius:g} {unit}; must be of {smallest:g} to {largest:g} m, as with "
-        f"{' or '.join(fits) if fits else 'no unit of length'}"
-    )
+    if f"unit={unit}" not in fits:
+        raise PackingError(
+            f"{path}: grains of {radius:g} {unit}; must be of {smallest:g} to {largest:g} m, as with "
+            f"{' or '.join(fits) or 'no unit of length'}"
+        )
 
 
-def _contacts_in_file(path, scaled, overlap):
+def _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap):
     """Pairs (M, 2) of grains that touch by the digits of the file; PackingError where they overlap too deeply."""
-    position, radius = scaled.position, scaled.radius
-    grains, nearest = np.arange(len(radius)), cKDTree(position).query(position, 2)[1]
-    other = np.where(nearest[:, 0] == grains, nearest[:, 1], nearest[:, 0])  # one in the same place may come first
-    _require_shallow(path, scaled, np.stack([grains, other], axis=1), overlap)  # before there are too many pairs
-    pairs = touching(position, radius, scaled.tolerance)
-    _require_shallow(path, scaled, pairs, overlap)
+    pairs = touching(position, radius, tolerance)
     if not len(pairs):
         return pairs
-    depth = equilibrium_overlaps(radius, pairs, scaled.grain_radius, overlap)
-    gaps = surface_gaps(position, radius, pairs)
-    # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
-    at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
-    return pairs[gaps <= np.maximum(0.0, scaled.tolerance - at_rest_there * depth)]
-
-
-def _require_shallow(path, scaled, pairs, overlap):
-    smaller = scaled.radius[pairs].min(axis=1)
-    beyond = -surface_gaps(scaled.position, scaled.radius, pairs)
-    beyond -= equilibrium_overlaps(scaled.radius, pairs, scaled.grain_radius, overlap)
-    allowed = np.maximum(scaled.tolerance, DEEPEST_OVERLAP * smaller)
-    if len(pairs) and (beyond > allowed).any():
+    gaps, depth = surface_gaps(position, radius, pairs), equilibrium_overlaps(radius, pairs, grain_radius, overlap)
+    smaller = radius[pairs].min(axis=1)
+    beyond, allowed = -gaps - depth, np.maximum(tolerance, DEEPEST_OVERLAP * smaller)
+    if (beyond > allowed).any():
         worst = np.argmax(beyond / smaller)
         first, second = pairs[worst]
         raise PackingError(
@@ -231,6 +200,9 @@ def _require_shallow(path, scaled, pairs, overlap):
             f"one more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or "
             "a larger tolerance"
         )
+    # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
+    at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
+    return pairs[gaps <= np.maximum(0.0, tolerance - at_rest_there * depth)]
 
 
 def _in_pieces(path, packing, wanted):

@@ -1,27 +1,45 @@
-"""Spheres in files of other programs: npz, VTK, the YAML of pyFracAggregate, and tables of text (text_table.py).
+"""Spheres in files of other programs. What a file holds decides about its format, not its name.
 
-What a file holds decides about its format, not its name.
+npz and VTK; the YAML of pyFracAggregate; and tables of text: xyz, extended xyz, LAMMPS data and dump, DustCollider,
+and columns with or without names (csv, YADE, FracVAL, PyFracVAL, aggregate_gen). Of several frames the last one is
+taken.
+
+Sources: https://github.com/libAtoms/extxyz (Properties), https://docs.lammps.org (dump, read_data), YADE's
+export.textExt, and files that the others write.
 """
 
 import locale
-import os
 import re
 from dataclasses import dataclass
 
 import numpy as np
-import pandas
 
 from analysis.runs.files import RunFolderError, array_names, read_arrays
 from analysis.runs.folder import LARGEST
-from analysis.runs.table import EXACTLY
 from yade_scripts.packings.packing import PackingError
-from yade_scripts.packings.text_table import FORMATS, find_table
 
+FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
 POSITIONS = ("position", "positions", "pos", "xyz", "coordinates", "coords", "points", "centers", "centres")
-RADII = ("radius", "radii", "r", "rad", "shape.radius")
-DIAMETERS = ("diameter", "diam")
-IGNORED = "-"
+# What programs call a column (LAMMPS, OVITO, pandas, ParaView); unwrapped coordinates come before wrapped ones.
+COLUMNS = {
+    axis: [f"{axis}u", axis]
+    + [f"{name}{dot}{axis}" for name in ("pos", "position", "center", "centre") for dot in "_."]
+    + [f"{name}{dot}{number}" for name in ("points", "pos", "position") for dot in ":_."]
+    for number, axis in enumerate("xyz")
+}
+COLUMNS["radius"] = ["radius", "radii", "r", "rad", "shape.radius"]
+COLUMNS["diameter"] = ["diameter", "diam"]
+# https://docs.lammps.org/read_data.html, "Atoms section"
+ATOM_STYLES = {
+    "sphere": "id type diameter density x y z",
+    "bpm/sphere": "id mol type diameter density x y z",
+    "atomic": "id type x y z",
+    "bond": "id mol type x y z",
+    "molecular": "id mol type x y z",
+    "charge": "id type q x y z",
+    "full": "id mol type q x y z",
+}
 SAMPLE = 2000  # values whose digits tell how finely a file is written
 
 
@@ -33,9 +51,9 @@ class Spheres:
     ----------
     position : (N, 3) array
     radius : (N,) array or None
-        None where the file has none; in the file's unit of length.
+        In the file's unit of length; None where the file has none.
     about : str
-        The format and the columns that were taken, in a few words.
+        The format, and whether there are radii.
     unit : str or None
         The file's own, if it names one.
     """
@@ -64,206 +82,263 @@ class Spheres:
 
 
 def read_spheres(path, most, names=None):
-    """Spheres of a file.
+    """Spheres of a file; names: of the columns of a table, instead of its own.
 
-    Parameters
-    ----------
-    path : str
-    most : int
-        Largest number of grains.
-    names : list of str, optional
-        Of the columns of a table, instead of its own.
-
-    Returns
-    -------
-    Spheres
-
-    Raises
-    ------
-    PackingError
-        Where the file is none of FORMATS, has too many grains or holds what is no number.
+    Raises PackingError where the file is of none of FORMATS, has fewer than 2 grains or more than `most`, or holds
+    what is no number.
     """
-    if os.path.exists(path) and not os.path.isfile(path):
-        raise PackingError(f"{path}: is no regular file; must be one")
     with open(path, "rb") as file:
-        start = file.read(4096)
-    if start.startswith(b"PK\x03\x04"):
-        reader = _of_npz
-    elif start.startswith((b"# vtk DataFile", b"<?xml", b"<VTKFile")):
-        reader = _of_vtk
-    elif b"aggregate:" in start and b"positions:" in start:
-        reader = _of_yaml
-    elif b"\0" in start:
-        raise PackingError(f"{path}: of an unknown format; must be {FORMATS}")
-    else:
-        reader = None
-    if reader and names:
-        raise PackingError(f"names = {','.join(names)}: {path} is no table; must be left out")
-    spheres = reader(path) if reader else _of_table(path, most, names)
-    if not 2 <= len(spheres.position) <= most:
-        raise PackingError(f"{path}: holds {len(spheres.position)} grains; must be 2 to {most}")
+        content = file.read()
+    start = content[:4096]
+    try:
+        if start.startswith(b"PK\x03\x04"):
+            spheres = _of_npz(path)
+        elif start.startswith((b"# vtk DataFile", b"<?xml", b"<VTKFile")):
+            spheres = _of_vtk(path, start)
+        elif b"aggregate:" in start and b"positions:" in start:
+            spheres = _of_yaml(content)
+        elif b"\0" in start:
+            raise ValueError(f"of an unknown format; must be {FORMATS}")
+        else:
+            spheres = _of_text(content.decode("utf-8-sig", errors="replace"), names)
+        if not 2 <= len(spheres.position) <= most:
+            raise ValueError(f"holds {len(spheres.position)} grains; must be 2 to {most}")
+    except (ValueError, RunFolderError) as error:
+        reason = " ".join(str(error).split())
+        raise PackingError(f"{path}: {reason.removeprefix(f'{path}: ')}") from None
     return spheres
 
 
 def _of_npz(path):
-    """Pickled objects are refused, never loaded."""
-    try:
-        names = array_names(path)
-        together = next((name for name in names if name.lower() in POSITIONS), None)
-        found = _roles(names)
-        arrays = read_arrays(path, [*([together] if together else []), *(names[column] for column in found.values())])
-    except RunFolderError as error:
-        raise PackingError(f"{error}; must be an .npz with position (N, 3) and radius (N,)") from None
-    if together is None:
-        _require_axes(path, found, names)
-    by_role = {role: arrays[names[column]] for role, column in found.items()}
-    return _spheres(path, "npz", by_role, "m" if {"seed", "parameters"} <= set(names) else None, arrays.get(together))
+    """Positions in one array (N, 3), or an array for each axis."""
+    names = array_names(path)
+    together = [name for name in names if name.lower() in POSITIONS][:1]
+    found = _columns(names, axes=() if together else "xyz")
+    arrays = read_arrays(path, [*together, *(names[column] for column in found.values())])
+    own = {"seed", "parameters"} <= set(names)  # of make_packing.py
+    by_name = {name: arrays[names[column]] for name, column in found.items()}
+    return _spheres("npz", by_name, arrays[together[0]] if together else None, "m" if own else None)
 
 
-def _of_vtk(path):
-    """A legacy or XML file of VTK: its points, with an array of radii."""
+def _of_vtk(path, start):
+    """The points of a legacy or XML file, with an array of radii."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
     from vtkmodules.vtkIOLegacy import vtkGenericDataObjectReader
     from vtkmodules.vtkIOXML import vtkXMLGenericDataObjectReader
 
-    with open(path, "rb") as file:
-        legacy = file.read(5) == b"# vtk"
-    reader = vtkGenericDataObjectReader() if legacy else vtkXMLGenericDataObjectReader()
     problems = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(problems)
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-    reader.SetFileName(path)
-    if legacy:
+    if start.startswith(b"# vtk"):
+        reader = vtkGenericDataObjectReader()
         reader.ReadAllScalarsOn()
         reader.ReadAllFieldsOn()
+    else:
+        reader = vtkXMLGenericDataObjectReader()
+    reader.SetFileName(path)
     own_locale = locale.setlocale(locale.LC_ALL)
-    try:
-        reader.Update()
-    finally:
-        locale.setlocale(locale.LC_ALL, own_locale)  # VTK leaves C: text files would be ASCII from then on
+    reader.Update()
+    locale.setlocale(locale.LC_ALL, own_locale)  # VTK leaves C: text files would be ASCII from then on
     output = None if problems.GetOutput() else reader.GetOutputDataObject(0)
     if not hasattr(output, "GetPoints") or output.GetPoints() is None:
-        must = "must be a file of points with their radii, such as state_NNNNNN/grains.vtp of an export"
-        raise PackingError(f"{path}: no points in it that VTK can read; {must}")
+        raise ValueError("no points in it that VTK can read; must be points with their radii, such as grains.vtp")
     data = output.GetPointData()
-    names = [data.GetArrayName(number) for number in range(data.GetNumberOfArrays())]
-    by_role = {role: vtk_to_numpy(data.GetArray(column)) for role, column in _roles(names).items() if role not in "xyz"}
-    return _spheres(path, "VTK", by_role, None, vtk_to_numpy(output.GetPoints().GetData()))
+    found = _columns([data.GetArrayName(number) for number in range(data.GetNumberOfArrays())], axes=())
+    by_name = {name: vtk_to_numpy(data.GetArray(column)) for name, column in found.items()}
+    return _spheres("VTK", by_name, vtk_to_numpy(output.GetPoints().GetData()))
 
 
-def _of_yaml(path):
+def _of_yaml(content):
     """pyFracAggregate's aggregate: positions, radii, length_unit."""
     import yaml
 
     try:
-        with open(path, encoding="utf-8", errors="replace") as file:
-            found = yaml.load(file, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))["aggregate"]
+        found = yaml.load(content, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))["aggregate"]
         position, radius = (np.array(found[name], dtype=float) for name in ("positions", "radii"))
-    except (yaml.YAMLError, ValueError, KeyError, TypeError, RecursionError) as error:
-        reason = " ".join(str(error).split())[:100]
-        raise PackingError(
-            f"{path}: not of pyFracAggregate ({reason}); must have aggregate: positions, radii"
-        ) from None
+    except (yaml.YAMLError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"not of pyFracAggregate ({error}); must have aggregate: positions, radii") from None
     unit = str(found.get("length_unit")).replace("\u03bc", "u").replace("\u00b5", "u")
-    return _spheres(path, "YAML", {"radius": radius}, unit if unit in IN_A_METRE else None, position)
+    return _spheres("YAML", {"radius": radius}, position, unit if unit in IN_A_METRE else None)
 
 
-def _of_table(path, most, names):
-    table = find_table(path)
+# ---- tables of text ----
+
+
+@dataclass(frozen=True)
+class Table:
+    """Where the grains are among the lines of a text."""
+
+    kind: str
+    first: int  # line at which they begin, from 0
+    rows: int | None = None  # None: to the end
+    names: list | None = None  # of the columns; None: not known
+    separator: str | None = None  # None: blanks
+    unit: str | None = None  # of length, if the format has one
+
+
+def _of_text(text, names):
+    lines = text.split("\n")
+    table = _find_table(lines)
     names = names or table.names
     if names is None:
-        raise PackingError(
-            f"{path}: {table.kind}, columns without names; must be named, as in names={IGNORED},x,y,z,{IGNORED},radius"
-        )
-    found = _roles(names)
-    _require_axes(path, found, names)
-    if table.rows is not None and table.rows > most:
-        raise PackingError(f"{path}: holds {table.rows} grains; must be 2 to {most}")
+        raise ValueError(f"{table.kind}, columns without names; must be named, as in names=-,x,y,z,-,radius")
+    found = _columns(names)
+    rows = [line for line in lines[table.first :] if line.strip() and not line.startswith("#")][: table.rows]
+    if len(rows) < (table.rows or 1):
+        raise ValueError(f"{len(rows)} rows of numbers; must be {table.rows or '2 or more'}")
     try:
-        frame = pandas.read_csv(
-            path,
-            sep=table.separator,
-            header=None,
-            skiprows=table.first,
-            nrows=most + 1 if table.rows is None else table.rows,
-            comment="#",
-            skipinitialspace=True,
-            encoding="utf-8-sig",
-            encoding_errors="replace",
-            low_memory=False,
-            **EXACTLY,
-        )
-    except pandas.errors.EmptyDataError:
-        raise PackingError(f"{path}: no rows of numbers; must have 2 or more") from None
-    except ValueError as error:  # rows of unequal length
-        reason = " ".join(str(error).split())
-        raise PackingError(
-            f"{path}: not a table of numbers ({reason}); must have the same columns in all rows"
-        ) from None
-    if max(found.values()) >= frame.shape[1]:
-        raise PackingError(f"{path}: {frame.shape[1]} columns; must have those of {', '.join(names)}")
-    if table.rows is not None and len(frame) < table.rows:
-        raise PackingError(f"{path}: {len(frame)} rows of numbers; must be {table.rows}, by its header")
-    numbers = {role: pandas.to_numeric(frame[column], errors="coerce").to_numpy() for role, column in found.items()}
-    return _spheres(path, table.kind, numbers, table.unit)
+        array = np.loadtxt(rows, delimiter=table.separator, usecols=tuple(found.values()), ndmin=2)
+    except ValueError as error:
+        raise ValueError(f"not a table of numbers ({error})") from None
+    return _spheres(table.kind, dict(zip(found, array.T)), unit=table.unit)
 
 
-def _roles(names):
-    """{x, y, z and radius or diameter: number of the column} among the names of a file's columns, where they are there.
+def _find_table(lines):
+    head = [line.strip() for line in lines[:60]]
+    if not any(head):
+        raise ValueError("empty; must be a file of grains")
+    if next(filter(None, head)).startswith("ITEM:"):
+        return _dump(lines)
+    if any(re.match(r"\d+\s+atoms\b", line) for line in head):
+        return _data(lines)
+    if head[0].isdecimal():
+        return _xyz(lines)
+    words = head[0].split()
+    rows = [line.split() for line in head[5:] if line]
+    if 3 <= len(words) < 7 and words[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
+        # aggregate.txt of DustCollider: N and two radii, four lines, the grains in nm
+        names = ["x", "y", "z", "-", "radius", "-", "material"]
+        return Table("DustCollider", 5, int(words[0]), names, unit="nm")
+    return _plain(head)
 
-    Names go without case, quotes and a unit in brackets; unwrapped coordinates come before wrapped ones.
+
+def _count(lines, number):
+    """The number of grains that a line begins with."""
+    word = lines[number].split()[0] if lines[number].strip() else ""
+    if not word.isdecimal():
+        raise ValueError(f"line {number + 1}: '{word[:40]}' grains; must be a whole number > 0")
+    return int(word)
+
+
+def _dump(lines):
+    """ITEM: NUMBER OF ATOMS, a line with it, ..., ITEM: ATOMS and names, the grains; again for each frame."""
+    counts = [number + 1 for number, line in enumerate(lines) if line.startswith("ITEM: NUMBER OF ATOMS")]
+    frames = [number for number, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
+    rows = _count(lines, counts[-1]) if counts else None
+    if not frames:
+        raise ValueError("no ITEM: ATOMS; must have one")
+    return Table(f"LAMMPS dump, {_frames(frames)}", frames[-1] + 1, rows, lines[frames[-1]].split()[2:])
+
+
+def _data(lines):
+    """N atoms in the header; Atoms # style, an empty line, the grains."""
+    header = next(number for number, line in enumerate(lines) if re.match(r"\s*\d+\s+atoms\b", line))
+    for number, line in enumerate(lines):
+        if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", line):
+            names = ATOM_STYLES[section[1]].split() if section[1] in ATOM_STYLES else None
+            kind = f"LAMMPS data, atom style {section[1] or 'without name'}"
+            return Table(kind, number + 1, _count(lines, header), names)
+    raise ValueError("no section Atoms; must have one")
+
+
+def _xyz(lines):
+    """A number of grains, a line about them, the grains; again for each frame."""
+    frames = [0]
+    while (after := frames[-1] + 2 + _count(lines, frames[-1])) < len(lines) and lines[after].strip():
+        frames.append(after)
+    last = frames[-1]
+    about, first_row = (lines[last + 1 : last + 3] + ["", ""])[:2]
+    names = None
+    if properties := re.search(r'Properties="?([^"\s]+)', about):
+        names = _properties(properties[1])
+    elif len(row := first_row.split()) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
+        names = ["species", "x", "y", "z", "radius"][: len(row)]  # x y z may be without a species: then not known
+    kind = "extended xyz" if properties else "xyz"
+    return Table(f"{kind}, {_frames(frames)}", last + 2, _count(lines, last), names)
+
+
+def _properties(text):
+    """Names of all columns, of species:S:1:pos:R:3:radius:R:1."""
+    words, names = text.split(":"), []
+    for name, count in zip(words[::3], words[2::3]):
+        together = "xyz" if name.lower() in POSITIONS else [f"{name}_{part}" for part in range(int(count))]
+        names += [name] if count == "1" else together
+    return names
+
+
+def _frames(frames):
+    return f"the last of {len(frames)} frames" if len(frames) > 1 else "one frame"
+
+
+def _plain(head):
+    """Comments with #, a line of names or none, the grains."""
+    comments = [line.lstrip("# ") for line in head if line.startswith("#")]
+    at = next((number for number, line in enumerate(head) if line and not line.startswith("#")), None)
+    if at is None:
+        raise ValueError(f"{len(head)} lines of comments; must be followed by grains")
+    separator = next((mark for mark in ",;" if mark in head[at]), None)
+    words = head[at].split(separator)
+    if len(words) == 1:
+        raise ValueError(f"of an unknown format; must be {FORMATS}")
+    if not any(map(_is_number, words)):
+        return Table("table", at + 1, None, words, separator)
+    names = ["x", "y", "z", "radius"][: len(words)] if len(words) <= 4 else None
+    for comment in comments:
+        of_yade = re.match(r"format (x_y_z_\S*|\S+_x_y_z_\S*)$", comment)
+        in_comment = of_yade[1].split("_") if of_yade else comment.split(separator)
+        if {"x", "y", "z"} <= {word.strip().lower() for word in in_comment}:
+            names = in_comment
+    return Table("table", at, None, names, separator)
+
+
+def _is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+# ---- columns ----
+
+
+def _columns(names, axes="xyz"):
+    """{name of COLUMNS: number of the column} of the names of a file's columns, which must have `axes` among them.
+
+    Names go without case, quotes and a unit in brackets.
     """
     plain = [re.sub(r"[\[(].*[\])]", "", str(name)).strip(" \t\"'_").lower() for name in names]
-    wanted = {axis: _names_of_axis(axis, number) for number, axis in enumerate("xyz")}
-    wanted.update(radius=RADII, diameter=DIAMETERS)
-    found = {
-        role: next((plain.index(name) for name in aliases if name in plain), None) for role, aliases in wanted.items()
-    }
-    return {role: column for role, column in found.items() if column is not None}
-
-
-def _names_of_axis(axis, number):
-    """What programs call a coordinate: LAMMPS, OVITO, pandas, ParaView."""
-    of_axis = [f"{prefix}{dot}{axis}" for prefix in ("pos", "position", "center", "centre") for dot in "_."]
-    of_number = [f"{prefix}{dot}{number}" for prefix in ("points", "pos", "position") for dot in ":_."]
-    return (f"{axis}u", axis, *of_axis, *of_number)
-
-
-def _require_axes(path, found, names):
-    """Raise PackingError unless _roles() found x, y and z among the names."""
-    if missing := [axis for axis in "xyz" if axis not in found]:
-        named = ", ".join(map(str, names))
-        named = named if len(named) <= 100 else named[:100] + "..."
-        raise PackingError(
-            f"{path}: no {' '.join(missing)} among its columns {named}; must be there, or names=x,y,z,radius must name "
-            f"the columns, {IGNORED} for those without use"
+    found = {}
+    for name, aliases in COLUMNS.items():
+        if there := [alias for alias in aliases if alias in plain]:
+            found[name] = plain.index(there[0])
+    if missing := [axis for axis in axes if axis not in found]:
+        raise ValueError(
+            f"no {' '.join(missing)} among its columns {', '.join(map(str, names))[:100]}; must be there, or "
+            "names=x,y,z,radius must name the columns, - for those without use"
         )
+    return {name: column for name, column in found.items() if axes or name not in "xyz"}
 
 
-def _spheres(path, kind, by_role, unit=None, position=None):
-    """Spheres of arrays {x, y, z, and radius or diameter if there are: (N,)}, or of positions (N, 3) in place of x, y,
-    z."""
-    if position is not None:
-        if position.ndim != 2 or position.shape[1] != 3:
-            raise PackingError(f"{path}: positions have the shape {position.shape}; must be (N, 3)")
-        by_role = {**by_role, **dict(zip("xyz", position.T))}
-    grains = len(by_role["x"]) if by_role["x"].ndim else 0
-    for role, array in by_role.items():
-        if array.shape != (grains,):
-            raise PackingError(
-                f"{path}: {role} has the shape {array.shape}, positions are {grains}; must be ({grains},)"
-            )
+def _spheres(kind, by_name, position=None, unit=None):
+    """Spheres of arrays (N,) by the names of COLUMNS; position (N, 3) in place of x, y, z."""
+    if position is None:
+        position = np.stack([by_name.pop(axis) for axis in "xyz"], axis=-1)
+    if position.ndim != 2 or position.shape[1] != 3:
+        raise ValueError(f"positions have the shape {position.shape}; must be (N, 3)")
+    for name, array in {**dict(zip("xyz", position.T)), **by_name}.items():
+        if array.shape != (len(position),):
+            raise ValueError(f"{name} has the shape {array.shape}, of {len(position)} grains; must be (N,)")
         if array.dtype.kind not in "fiu":
-            raise PackingError(f"{path}: {role} is no finite number; must be one")
-        for number in np.flatnonzero(~(np.abs(array) < LARGEST))[:1]:
-            must = f"must be a finite number below {LARGEST:g}"
-            raise PackingError(f"{path}: {role} of grain {number} is {array[number]:g}; {must}")
-    radius = by_role.get("radius")
-    if radius is None and "diameter" in by_role:
-        radius = by_role["diameter"] / 2
-    if radius is not None and len(radius) and radius.min() <= 0:
-        raise PackingError(f"{path}: radius of grain {radius.argmin()} is {radius.min():g}; must be > 0")
-    sizes = "without radii" if radius is None else "with radii" if "radius" in by_role else "with diameters"
-    position = np.stack([by_role[axis] for axis in "xyz"], axis=1)
+            raise ValueError(f"{name} is no finite number; must be one")
+        for grain in np.flatnonzero(~(np.abs(array) < LARGEST))[:1]:
+            raise ValueError(f"{name} of grain {grain} is {array[grain]:g}; must be a finite number below {LARGEST:g}")
+    radius, sizes = by_name.get("radius"), "with radii"
+    if radius is None and "diameter" in by_name:
+        radius, sizes = by_name["diameter"] / 2, "with diameters"
+    if radius is None:
+        sizes = "without radii"
+    elif len(radius) and radius.min() <= 0:
+        raise ValueError(f"radius of grain {radius.argmin()} is {radius.min():g}; must be > 0")
     return Spheres(position, radius, f"{kind}, {sizes}", unit)
