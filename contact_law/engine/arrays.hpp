@@ -1,5 +1,5 @@
-// What the fused engine keeps between steps. Grains in the order of a k-d tree (grain_order.cpp); contacts in blocks of eight, each number of the
-// eight side by side.
+// What the fused engine keeps between steps. Grains in the order of a k-d tree (grain_order.cpp); contacts in blocks of eight, each number
+// of the eight side by side.
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "periodic_cell.hpp"
@@ -41,16 +41,48 @@ struct alignas(64) Grain {
 inline Vec3<double> positionOf(const Grain& g) { return { g.x, g.y, g.z }; }
 inline Vec3<double> velocityOf(const Grain& g) { return { g.vx, g.vy, g.vz }; }
 inline Vec3<double> spinOf(const Grain& g) { return { g.wx, g.wy, g.wz }; }
-inline Vec3<double> separationOf(const Grain& a, const Grain& b)
-{
-	return positionOf(a) - positionOf(b);
-} // of the grains themselves, not their images
+// Of the grains themselves, not their images.
+inline Vec3<double> separationOf(const Grain& a, const Grain& b) { return positionOf(a) - positionOf(b); }
 
 inline void addToGrain(Grain& g, const Vec3<double>& force, const Vec3<double>& torque)
 {
 	g.fx += force.x, g.fy += force.y, g.fz += force.z;
 	g.tx += torque.x, g.ty += torque.y, g.tz += torque.z;
 }
+
+// ---- orientations, only where a scene asks for them ----
+
+struct Orientation { // unit quaternion
+	double w, x, y, z;
+};
+
+// q turned by the angle |turn| about turn [rad], laboratory frame; kept a unit quaternion.
+inline Orientation turnedBy(double turnX, double turnY, double turnZ, const Orientation& q)
+{
+	const double h = 0.25 * (turnX * turnX + turnY * turnY + turnZ * turnZ); // half the angle, squared
+	double c, s;                                                             // cos(half), sin(half)/(2 half)
+	if (h < 0.01) {                                                          // series of both, cut where the rest is below 1e-16
+		c = 1 - h * (1. / 2 - h * (1. / 24 - h * (1. / 720 - h * (1. / 40320 - h * (1. / 3628800)))));
+		s = 0.5 * (1 - h * (1. / 6 - h * (1. / 120 - h * (1. / 5040 - h * (1. / 362880)))));
+	} else {
+		const double half = std::sqrt(h);
+		c = std::cos(half);
+		s = 0.5 * std::sin(half) / half;
+	}
+	const double x = s * turnX, y = s * turnY, z = s * turnZ;
+	Orientation r { c * q.w - x * q.x - y * q.y - z * q.z, c * q.x + x * q.w + y * q.z - z * q.y, c * q.y + y * q.w + z * q.x - x * q.z,
+		c * q.z + z * q.w + x * q.y - y * q.x };
+	const double unit = 1.5 - 0.5 * (r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z); // one Newton step, ample against rounding
+	return { unit * r.w, unit * r.x, unit * r.y, unit * r.z };
+}
+
+inline void turnOrientations(const Grain* begin, const Grain* end, Orientation* orientation, double dt)
+{
+	for (const Grain* g = begin; g < end; ++g, ++orientation)
+		*orientation = turnedBy(dt * g->wx, dt * g->wy, dt * g->wz, *orientation);
+}
+
+// ---- contacts ----
 
 constexpr int lanes = 8; // contacts in a block
 
@@ -121,8 +153,8 @@ struct ForcePass : PairPass {
 	bool cut; // springs beyond their limits are events: cut, not returned to the limit (kernel/limits.hpp), or after a script's move
 };
 
-// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much kicks
-// changed each component at most. The fourth lane: room for a register.
+// The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much
+// kicks changed each component at most. The fourth lane: room for a register.
 struct alignas(32) VelocityRange {
 	static constexpr int lanes = 4;
 	double least[lanes], most[lanes], kick[lanes];

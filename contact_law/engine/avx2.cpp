@@ -1,10 +1,51 @@
-// The engine's passes with AVX2.
-#include "pack_avx2.hpp"
-#include "arrays.hpp"
-#include "scalar_grains.hpp"
+// The engine's passes with AVX2: a pack is four doubles in a register.
+#include "pass_access.hpp"
+#include <immintrin.h>
 
 namespace contact_law {
 namespace avx2 {
+
+	// ---- the pack, with what the kernel needs of a number type (kernel/numbers.hpp) ----
+
+	struct PackMask {
+		__m256d lanes;
+	};
+
+	struct Pack {
+		using Mask = PackMask;
+		static constexpr int width = 4;
+		__m256d v;
+
+		Pack() = default;
+		Pack(__m256d x)
+		        : v(x)
+		{
+		}
+		Pack(double x)
+		        : v(_mm256_set1_pd(x))
+		{
+		}
+		static Pack load(const double* p) { return _mm256_load_pd(p); }
+		void store(double* p) const { _mm256_store_pd(p, v); }
+	};
+
+	inline Pack operator+(Pack a, Pack b) { return _mm256_add_pd(a.v, b.v); }
+	inline Pack operator-(Pack a, Pack b) { return _mm256_sub_pd(a.v, b.v); }
+	inline Pack operator*(Pack a, Pack b) { return _mm256_mul_pd(a.v, b.v); }
+	inline Pack operator/(Pack a, Pack b) { return _mm256_div_pd(a.v, b.v); }
+	inline Pack operator-(Pack a) { return _mm256_sub_pd(_mm256_setzero_pd(), a.v); }
+
+	inline PackMask operator<(Pack a, Pack b) { return { _mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ) }; }
+	inline PackMask operator|(PackMask a, PackMask b) { return { _mm256_or_pd(a.lanes, b.lanes) }; }
+	inline unsigned bitsOf(PackMask m) { return unsigned(_mm256_movemask_pd(m.lanes)); }
+	inline bool anyOf(PackMask m) { return bitsOf(m) != 0; }
+	inline Pack choose(PackMask m, Pack yes, Pack no) { return _mm256_blendv_pd(no.v, yes.v, m.lanes); }
+	inline Pack absolute(Pack a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.), a.v); }
+	inline Pack nearest(Pack a) { return _mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
+	inline Pack root(Pack x) { return _mm256_sqrt_pd(x.v); }
+	inline Pack inverseRoot(Pack x) { return Pack(1.) / root(x); }
+
+	// ---- grains ----
 
 	static inline void transpose(__m256d r[4])
 	{
@@ -52,15 +93,8 @@ namespace avx2 {
 }
 }
 
-#include "bond_pass.hpp"
-#include "energy_pass.hpp"
 #include "force_pass.hpp"
-#include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet avx2Passes()
-{
-	return NeighbourPasses<avx2::Pack>::addTo(
-	        BondPasses<avx2::Pack>::addTo(EnergyPasses<avx2::Pack>::addTo(Passes<avx2::Pack>::all("avx2", &avx2::integrate))));
-}
+InstructionSet avx2Passes() { return allPasses<avx2::Pack>("avx2", &avx2::integrate); }
 }

@@ -1,9 +1,59 @@
-// The engine's passes with AVX-512.
-#include "pack_avx512.hpp"
-#include "arrays.hpp"
+// The engine's passes with AVX-512: a pack is eight doubles in a register.
+#include "pass_access.hpp"
+#include <immintrin.h>
 
 namespace contact_law {
 namespace avx512 {
+
+	// ---- the pack, with what the kernel needs of a number type (kernel/numbers.hpp) ----
+
+	struct PackMask {
+		__mmask8 bits;
+	};
+
+	struct Pack {
+		using Mask = PackMask;
+		static constexpr int width = 8;
+		__m512d v;
+
+		Pack() = default;
+		Pack(__m512d x)
+		        : v(x)
+		{
+		}
+		Pack(double x)
+		        : v(_mm512_set1_pd(x))
+		{
+		}
+		static Pack load(const double* p) { return _mm512_load_pd(p); }
+		void store(double* p) const { _mm512_store_pd(p, v); }
+	};
+
+	inline Pack operator+(Pack a, Pack b) { return _mm512_add_pd(a.v, b.v); }
+	inline Pack operator-(Pack a, Pack b) { return _mm512_sub_pd(a.v, b.v); }
+	inline Pack operator*(Pack a, Pack b) { return _mm512_mul_pd(a.v, b.v); }
+	inline Pack operator/(Pack a, Pack b) { return _mm512_div_pd(a.v, b.v); }
+	inline Pack operator-(Pack a) { return _mm512_sub_pd(_mm512_setzero_pd(), a.v); }
+
+	inline PackMask operator<(Pack a, Pack b) { return { _mm512_cmp_pd_mask(a.v, b.v, _CMP_LT_OQ) }; }
+	inline PackMask operator|(PackMask a, PackMask b) { return { __mmask8(a.bits | b.bits) }; }
+	inline unsigned bitsOf(PackMask m) { return m.bits; }
+	inline bool anyOf(PackMask m) { return m.bits != 0; }
+	inline Pack choose(PackMask m, Pack yes, Pack no) { return _mm512_mask_blend_pd(m.bits, no.v, yes.v); }
+	inline Pack absolute(Pack a) { return _mm512_abs_pd(a.v); }
+	inline Pack nearest(Pack a) { return _mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC); }
+
+	// 14 bits from the table, doubled twice by Newton's method: faster here than a square root and a division.
+	inline Pack inverseRoot(Pack x)
+	{
+		Pack r = _mm512_rsqrt14_pd(x.v);
+		const Pack half = Pack(0.5) * x;
+		r = r + r * (Pack(0.5) - half * r * r);
+		return r + r * (Pack(0.5) - half * r * r);
+	}
+	inline Pack root(Pack x) { return choose(Pack(1e-300) < x, x * inverseRoot(x), Pack(0.)); }
+
+	// ---- grains ----
 
 	// Rows of eight doubles, one a grain, to one register a column.
 	static inline void transpose(__m512d r[8])
@@ -58,8 +108,8 @@ namespace avx512 {
 		}
 	}
 
-	/* The same where equal grains follow each other: their sum stays in a register, where one addition would wait for the store of the one
-	 * before. In lists that are not quite in order they need not follow each other. */
+	/* The same where equal grains follow each other: their sum stays in a register, where one addition would wait for the store of
+	 * the one before. In lists that are not quite in order they need not follow each other. */
 	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6])
 	{
 		const __m256i to = _mm256_load_si256(reinterpret_cast<const __m256i*>(index));
@@ -112,15 +162,8 @@ namespace avx512 {
 }
 }
 
-#include "bond_pass.hpp"
-#include "energy_pass.hpp"
 #include "force_pass.hpp"
-#include "neighbour_search.hpp"
 
 namespace contact_law {
-InstructionSet avx512Passes()
-{
-	return NeighbourPasses<avx512::Pack>::addTo(BondPasses<avx512::Pack>::addTo(
-	        EnergyPasses<avx512::Pack>::addTo(Passes<avx512::Pack>::all("avx512", &avx512::integrate))));
-}
+InstructionSet avx512Passes() { return allPasses<avx512::Pack>("avx512", &avx512::integrate); }
 }

@@ -2,7 +2,7 @@
 // bond needs little room.
 #pragma once
 #include "../kernel/numbers.hpp"
-#include "bond_list.hpp"
+#include "contact_lists.hpp"
 #include "pass_access.hpp"
 
 namespace contact_law {
@@ -13,15 +13,11 @@ template <class Pack> struct BondPasses {
 
 	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at)
 	{
-		return constantsOf(pass, index, at, std::make_index_sequence<bondConstantCount>());
-	}
-	template <std::size_t... k>
-	static BondConstants<Pack> constantsOf(const BondPass& pass, int index, int at, std::index_sequence<k...>)
-	{
 		BondConstants<Pack> to;
-		((to.*bondConstantsOf<Pack>[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at)
-		                                                : Pack(pass.uniform->*bondConstantsOf<double>[k])),
-		        ...);
+#pragma GCC unroll 32
+		for (int k = 0; k < bondConstantCount; ++k)
+			to.*bondConstantsOf<Pack>[k] = pass.constants ? Pack::load(pass.constants[index].field[k] + at)
+			                                              : Pack(pass.uniform->*bondConstantsOf<double>[k]);
 		return to;
 	}
 
@@ -97,13 +93,11 @@ template <class Pack> struct BondPasses {
 		P::sumLanes(sum, sums);
 	}
 
-	// An instruction set's passes with those over bonds.
-	static InstructionSet addTo(InstructionSet set)
+	static void addTo(InstructionSet& set)
 	{
 		set.bondForces[false] = &forces<false>;
 		set.bondForces[true] = &forces<true>;
 		set.bondEnergies = &energies;
-		return set;
 	}
 };
 

@@ -1,15 +1,14 @@
-/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are made again.
- * A change of what is transferred, or of its order, raises formatNumber. */
+/* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are
+ * made again. A change of what is transferred, or of its order, raises formatNumber. */
 #include "checkpoint_archive.hpp"
 #include "dynamics.hpp"
-#include "material_list.hpp"
 
 namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum at the end; 9: with counts
-	// of the run before
+	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum
+	// at the end; 9: with counts of the run before
 	constexpr int formatNumber = 9;
 
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
@@ -124,40 +123,35 @@ template <class Archive> void PlaneContacts::transfer(Archive& archive)
 // What must be known before the grains can be laid out, and what must be as it was.
 template <class Archive> void Dynamics::transferLayout(Archive& archive)
 {
-	const auto named = [](const char* name) { return [name] { return std::string(name); }; };
 	archive.header(magicNumber, formatNumber);
-	archive.same(count, named("the number of bodies"));
-	archive.same(domainCount(), named("domains"));
-	archive.same(int(options.cell.on), named("O.periodic"));
-	archive.same(shared.material.size(), named("the number of materials"));
-	archive.same(shared.pairs.linearDamping, named("linearDamping"));
-	archive.same(shared.pairs.slidingStiffnessFactor, named("slidingStiffnessFactor"));
-	archive.same(shared.neck, named("neck"));
+	archive.same(count, "the number of bodies");
+	archive.same(domainCount(), "domains");
+	archive.same(int(options.cell.on), "O.periodic");
+	archive.same(shared.material.size(), "the number of materials");
+	archive.same(shared.pairs.linearDamping, "linearDamping");
+	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
+	archive.same(shared.neck, "neck");
 	std::size_t necks = shared.necks.size();
 	archive.number(necks);
 	shared.necks.resize(necks);
 	for (double& neck : shared.necks)
 		archive.number(neck);
-	archive.same(bool(shared.mechanisms & Sliding), named("sliding"));
-	archive.same(bool(shared.mechanisms & Rolling), named("rolling"));
-	archive.same(bool(shared.mechanisms & Twisting), named("twisting"));
-	archive.same(int(shared.limit), named("limit (0: held, 1: cut)"));
-	archive.same(shared.dt, named("the small step"));
+	archive.same(bool(shared.mechanisms & Sliding), "sliding");
+	archive.same(bool(shared.mechanisms & Rolling), "rolling");
+	archive.same(bool(shared.mechanisms & Twisting), "twisting");
+	archive.same(int(shared.limit), "limit (0: held, 1: cut)");
+	archive.same(shared.dt, "the small step");
 	for (std::size_t kind = 0; kind < shared.material.size(); ++kind)
 		for (const MaterialRow& row : materialList)
-			archive.same(shared.material[kind].*row.member,
-			        [&] { return std::string(row.name) + " of material " + std::to_string(kind); });
-	archive.same(shared.planes.size(), named("the number of Walls"));
+			archive.same(shared.material[kind].*row.member, row.name, " of material ", int(kind));
+	archive.same(shared.planes.size(), "the number of Walls");
 	for (const PlaneInput& plane : shared.planes) {
-		const auto ofPlane = [&](const char* what) {
-			return [&, what] { return what + (" of body " + std::to_string(plane.id)); };
-		};
-		archive.same(plane.axis, ofPlane("the axis"));
-		archive.same(plane.kind, ofPlane("the number of the material"));
+		archive.same(plane.axis, "the axis", " of body ", plane.id);
+		archive.same(plane.kind, "the number of the material", " of body ", plane.id);
 	}
 	original.resize(count);
 	for (int k = 0; k < count; ++k) {
-		archive.same(id(k), [&] { return "the id of body " + std::to_string(id(k)); });
+		archive.same(id(k), "the id", " of body ", id(k));
 		archive.number(original[k]);
 		indexHere[original[k]] = k;
 	}
@@ -166,12 +160,11 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 template <class Archive> void Dynamics::transferState(Archive& archive)
 {
 	for (int k = 0; k < count; ++k) {
-		const auto same = [&](double value, const char* name) {
-			archive.same(value, [&] { return std::string(name) + " of body " + std::to_string(id(original[k])); });
-		};
-		same(shared.grainRadius[k], "the radius"), same(1 / shared.inverseMass[k], "the mass");
-		same(1 / shared.inverseInertia[k], "the moment of inertia");
-		same(shared.kind[k], "the number of the material");
+		const int body = id(original[k]);
+		archive.same(shared.grainRadius[k], "the radius", " of body ", body);
+		archive.same(1 / shared.inverseMass[k], "the mass", " of body ", body);
+		archive.same(1 / shared.inverseInertia[k], "the moment of inertia", " of body ", body);
+		archive.same(shared.kind[k], "the number of the material", " of body ", body);
 		archive.number(shared.blocked[k]);
 		transfer(archive, shared.grains[k]);
 	}

@@ -1,8 +1,7 @@
 /* The two directions of a checkpoint: one list of numbers, taken through either archive, is saved or restored (as in Boost.Serialization).
  * Numbers are doubles in a row, whole ones (below 2^53) and flags among them; the last is a sum of all others' bits. */
 #pragma once
-#include "arrays.hpp"
-#include "number_text.hpp"
+#include "shared_state.hpp"
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -42,8 +41,8 @@ public:
 
 	void header(double magic, int format) { numbers.insert(numbers.end(), { magic, double(format) }); }
 	template <class T> void number(T& value) { numbers.push_back(double(value)); }
-	// One that must be the same when the run is restored; what() names it in the refusal.
-	template <class T, class What> void same(const T& value, What&&) { numbers.push_back(double(value)); }
+	// One that must be the same when the run is restored; its name and, if there is one, a number stand in the refusal.
+	template <class T> void same(const T& value, const char*, const char* = "", int = 0) { numbers.push_back(double(value)); }
 };
 
 class RestoringArchive {
@@ -64,11 +63,12 @@ public:
 		requireSealed(from);
 	}
 	template <class T> void number(T& value) { value = T(next()); }
-	template <class T, class What> void same(const T& value, What&& what)
+	template <class T> void same(const T& value, const char* name, const char* of = "", int number = 0)
 	{
 		const double saved = next();
 		if (saved != double(value))
-			throw std::invalid_argument(what() + " is another than in the checkpoint: it must be " + textOf(saved));
+			throw std::invalid_argument(std::string(name) + of + (*of ? std::to_string(number) : "")
+			        + " is another than in the checkpoint: it must be " + textOf(saved));
 	}
 
 private:

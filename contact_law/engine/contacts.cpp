@@ -2,24 +2,6 @@
 
 namespace contact_law {
 
-ContactNow swapped(const ContactNow& c)
-{
-	ContactNow s = c;
-	s.first = c.second;
-	s.second = c.first;
-	s.constants.radius1 = c.constants.radius2;
-	s.constants.radius2 = c.constants.radius1;
-	s.history = swapped(c.history);
-	s.geometry.normal = -c.geometry.normal;
-	s.forces.sliding = -c.forces.sliding;
-	s.forces.slidingDisplacement = -c.forces.slidingDisplacement;
-	s.velocity = -c.velocity;
-	s.bond.radius1 = c.bond.radius2;
-	s.bond.radius2 = c.bond.radius1;
-	s.shift = -c.shift;
-	return s;
-}
-
 ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slot)
 {
 	const SharedState& shared = dynamics.state();
@@ -49,24 +31,79 @@ ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int slot)
 	return n;
 }
 
-double normalForceNow(const Dynamics& dynamics, const ContactList& list, int slot)
-{
-	const SharedState& shared = dynamics.state();
-	const int i = list.first(slot), j = list.second(slot);
-	const PairConstants<double> c = shared.constantsOf(i, j);
-	ContactForces<double> f {};
-	normal::addForces(c, geometryOf(shared.separationOf(dynamics.cell(), i, j), c.radius1 + c.radius2), f);
-	return shared.hasDrag() ? f.normalForce + list.drag(slot) : f.normalForce;
+namespace {
+	ContactNow contactNow(const Dynamics& dynamics, const Domain& domain, const PlaneContact& contact)
+	{
+		ContactNow n { dynamics.given(contact.grain), contact.plane, contact.constants,
+			{ { contact.n1, {} }, contact.before.twist }, domain.planes.geometryOf(contact), domain.planes.forcesOf(contact),
+			contact.before.velocity, { 0, 0, 0 } };
+		n.onPlane = true;
+		n.point = contact.point;
+		return n;
+	}
+
+	// With its grains in the other order.
+	ContactNow swapped(const ContactNow& c)
+	{
+		ContactNow s = c;
+		s.first = c.second;
+		s.second = c.first;
+		s.constants.radius1 = c.constants.radius2;
+		s.constants.radius2 = c.constants.radius1;
+		s.history = swapped(c.history);
+		s.geometry.normal = -c.geometry.normal;
+		s.forces.sliding = -c.forces.sliding;
+		s.forces.slidingDisplacement = -c.forces.slidingDisplacement;
+		s.velocity = -c.velocity;
+		s.bond.radius1 = c.bond.radius2;
+		s.bond.radius2 = c.bond.radius1;
+		s.shift = -c.shift;
+		return s;
+	}
 }
 
-double normalForceNow(const Dynamics& dynamics, const BondList& list, int slot)
+std::vector<ContactNow> contactsNow(const Dynamics& dynamics)
+{
+	std::vector<ContactNow> all;
+	const auto add = [&](const auto& list, int slot, int first, int second) {
+		const ContactNow now = contactNow(dynamics, list, slot);
+		all.push_back(dynamics.id(first) < dynamics.id(second) ? now : swapped(now));
+	};
+	eachContact(dynamics, add);
+	eachBond(dynamics, add);
+	eachPlaneContact(dynamics, [&](const Domain& domain, const PlaneContact& c) { all.push_back(contactNow(dynamics, domain, c)); });
+	const auto ids = [&](const ContactNow& c) {
+		const int first = dynamics.id(c.first), second = c.onPlane ? dynamics.state().planes[c.second].id : dynamics.id(c.second);
+		return std::pair(std::min(first, second), std::max(first, second));
+	};
+	std::vector<std::pair<std::pair<int, int>, std::size_t>> order;
+	for (std::size_t k = 0; k < all.size(); ++k)
+		order.push_back({ ids(all[k]), k });
+	std::sort(order.begin(), order.end());
+	std::vector<ContactNow> sorted;
+	sorted.reserve(all.size());
+	for (const auto& [its, k] : order)
+		sorted.push_back(all[k]);
+	return sorted;
+}
+
+double elasticForce(const Dynamics& dynamics, const ContactList& list, int slot, const Vec3<double>& separation)
+{
+	const PairConstants<double> c = dynamics.state().constantsOf(list.first(slot), list.second(slot));
+	ContactForces<double> f {};
+	normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
+	return f.normalForce;
+}
+
+double elasticForce(const Dynamics& dynamics, const BondList& list, int slot, const Vec3<double>& separation)
 {
 	const Bond b = list.get(slot, dynamics.state().commonBond);
-	const auto g = geometryOf(dynamics.state().separationOf(dynamics.cell(), b.i, b.j), b.rest);
-	return bondForces(b.constants, g, b.history).normalForce;
+	return bondForces(b.constants, geometryOf(separation, b.rest), b.history).normalForce;
 }
 
 namespace {
+	double dragOf(const ContactList& list, int slot, const SharedState& shared) { return shared.hasDrag() ? list.drag(slot) : 0; }
+	double dragOf(const BondList&, int, const SharedState&) { return 0; }
 	double neckOf(const ContactList&, int, const SharedState&) { return 0; }
 	double neckOf(const BondList& list, int slot, const SharedState& shared)
 	{
@@ -76,13 +113,15 @@ namespace {
 	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists)
 	{
 		NormalForces found;
+		const SharedState& shared = dynamics.state();
 		const std::size_t most = (domain.touching.*lists)[Interior].size() + (domain.touching.*lists)[FirstOwned].size();
 		found.grains.reserve(2 * most), found.forces.reserve(most), found.necks.reserve(most);
 		eachSlotOf(dynamics, domain, lists, [&](const auto& list, int slot, int first, int second) {
+			const Vec3<double> separation = shared.separationOf(dynamics.cell(), list.first(slot), list.second(slot));
 			found.grains.push_back(first);
 			found.grains.push_back(second);
-			found.forces.push_back(normalForceNow(dynamics, list, slot));
-			found.necks.push_back(neckOf(list, slot, dynamics.state()));
+			found.forces.push_back(elasticForce(dynamics, list, slot, separation) + dragOf(list, slot, shared));
+			found.necks.push_back(neckOf(list, slot, shared));
 		});
 		return found;
 	}

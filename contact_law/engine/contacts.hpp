@@ -1,4 +1,5 @@
-// The contacts and sintered bonds of a run as they are now, and how many there are. Grains by their indices as given.
+// What is read from a run: its contacts and sintered bonds as they are now, sums, how long its step may be, why it broke down. Grains by
+// their indices as given.
 #pragma once
 #include "dynamics.hpp"
 
@@ -12,7 +13,7 @@ struct Booked {
 	double boundaryWork = 0, constraintWork = 0, externalWork = 0;
 };
 
-// One contact or bond.
+// One contact or bond, or (onPlane) the contact of a grain, the first, and a plane, the second.
 struct ContactNow {
 	int first, second;
 	PairConstants<double> constants;
@@ -24,13 +25,14 @@ struct ContactNow {
 	bool bonded = false;
 	BondConstants<double> bond {}; // when it is; the geometry's overlap is then rest - distance
 	double rest = 0;
+	bool onPlane = false;
+	Vec3<double> point { 0, 0, 0 }; // when it is, of the plane that belongs to the grain's pointer, from the plane's position [m]
 };
-// The same with its grains in the other order.
-ContactNow swapped(const ContactNow&);
 ContactNow contactNow(const Dynamics&, const ContactList&, int slot);
 ContactNow contactNow(const Dynamics&, const BondList&, int slot);
-double normalForceNow(const Dynamics&, const ContactList&, int slot); // elastic and viscous, positive when repulsive [N]
-double normalForceNow(const Dynamics&, const BondList&, int slot);    // elastic [N]
+// Of the normal force the elastic part, with the pair's grains at this distance from each other; positive when repulsive [N].
+double elasticForce(const Dynamics&, const ContactList&, int slot, const Vec3<double>& separation);
+double elasticForce(const Dynamics&, const BondList&, int slot, const Vec3<double>& separation);
 
 template <class Lists, class Visit>
 void eachSlotOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists, Visit&& visit)
@@ -49,6 +51,9 @@ template <class Lists, class Visit> void eachOf(const Dynamics& dynamics, Lists 
 // Of every contact (but bonds) once: visit(list, slot, its first and its second grain).
 template <class Visit> void eachContact(const Dynamics& dynamics, Visit&& visit) { eachOf(dynamics, &TouchingPairs::contacts, visit); }
 template <class Visit> void eachBond(const Dynamics& dynamics, Visit&& visit) { eachOf(dynamics, &TouchingPairs::bonds, visit); }
+
+// All of them by rising ids of what touches, the lower one of two grains first.
+std::vector<ContactNow> contactsNow(const Dynamics&);
 
 // Contacts and bonds of one domain: grains (first and second of each), normal forces [N], necks over the grains' radius (0: no bond).
 struct NormalForces {
@@ -82,5 +87,28 @@ std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of 
 Dissipation dissipated(const Dynamics&); // [J]
 Counts counts(const Dynamics&);
 Booked booked(const Dynamics&);
+
+// ---- how long a run's small step may be, and why a run broke down: which grain, which contact (soundness.cpp) ----
+
+// Steps from here on are unstable for some pair that the scene's kinds of grains could make, with or without bonds, in whatever packing
+// [s] (MODEL.md, "Step limits").
+double unstableStep(const Dynamics&);
+// The same for bonds of another neck [s].
+double unstableStepOfBonds(const Dynamics&, double neck);
+// The largest gap between grains that touch, or are bonded [m]: the neighbour lists must hold them so far apart, however small other
+// grains are.
+double mostStretched(const Dynamics&);
+
+// A grain, and what it touches, another or a plane; both as their owner calls them, -1: none.
+struct Diagnosis {
+	int grain = -1, other = -1;
+	double speed = 0, overlap = 0, force = 0; // of the grain [m/s]; over the smaller radius; elastic, along the normal [N]
+};
+enum { FastestGrain = -1 };
+// The grain as given, or the one that moves fastest, with its contact that had the largest force before the grains moved.
+Diagnosis diagnoseGrain(const Dynamics&, int grain = FastestGrain);
+// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are left out. Grain -1: none
+// does.
+Diagnosis deepestOverlap(const Dynamics&);
 
 } // namespace contact_law

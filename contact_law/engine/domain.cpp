@@ -162,7 +162,8 @@ void Domain::finishGroup(Group& group)
 	movedLatest.clear();
 }
 
-// The part of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after the kick.
+// The part of the convective acceleration in the kick to come, and its work: the impulse times the mean of the velocities before and after
+// the kick.
 void Domain::convect(int first, int last)
 {
 	Vec3<double> kicked { 0, 0, 0 };

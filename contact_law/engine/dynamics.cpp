@@ -1,6 +1,8 @@
-#include "exchange.hpp"
+#include "contacts.hpp"
 #include <algorithm>
+#include <numeric>
 #include <omp.h>
+#include <set>
 #include <stdexcept>
 
 namespace contact_law {
@@ -38,7 +40,10 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
-	shared.necks = inherited.necks();
+	std::set<double> necks;
+	for (const Inherited::Pair& one : inherited.contacts)
+		if (one.neck > 0) necks.insert(one.neck);
+	shared.necks.assign(necks.begin(), necks.end());
 	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
@@ -82,88 +87,22 @@ void Dynamics::loadGrains(const Grains& grains)
 	shrinkGrains();
 }
 
-void copyMotion(const GrainMotion& g, Grain& grain)
+// The radii that ordinary contacts see, and all that follows from them and from the necks.
+void Dynamics::shrinkGrains()
 {
-	grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
-	grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
-	grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
-}
-
-void copyMotion(const Grain& grain, GrainMotion& g)
-{
-	g.position[0] = grain.x, g.position[1] = grain.y, g.position[2] = grain.z;
-	g.velocity[0] = grain.vx, g.velocity[1] = grain.vy, g.velocity[2] = grain.vz;
-	g.angularVelocity[0] = grain.wx, g.angularVelocity[1] = grain.wy, g.angularVelocity[2] = grain.wz;
-}
-
-void Dynamics::set(int index, const GrainMotion& now)
-{
-	const int k = indexHere[index];
-	Grain& p = shared.grains[k];
-	if (now.blocked != shared.blocked[k]) {
-		domainOf(k).constraints.block(shared.grains.data(), k, now.blocked);
-		shared.blocked[k] = now.blocked;
-	}
-	if (options.orientations) shared.orientation[k] = now.orientation;
-	const Vec3<double> from = positionOf(p);
-	copyMotion(now, p);
-	shared.displace(k, positionOf(p) - from);
-	kick(shared, p, k, -0.5 * shared.dt);
-	for (const EarlyKick& early : domainOf(k).ledger.earlyKicks())
-		if (early.grain == k) contact_law::kickEarly(shared, early, p, -shared.dt);
-	velocitiesSet = true;
-	outdateLists();
-}
-
-void Dynamics::setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity)
-{
-	shared.planes[plane].velocity = velocity;
-	for (auto& domain : domains)
-		domain->planes.moved(plane, position);
-}
-
-void Dynamics::setOutsideForces(const std::vector<OutsideForce>& given_, Onset onset)
-{
-	std::vector<OutsideForce> all = given_;
-	for (OutsideForce& f : all)
-		f.grain = indexHere[f.grain];
-	for (auto& domain : domains) {
-		const std::vector<OutsideForce> before = std::move(domain->outside.grains);
-		domain->outside.grains.clear();
-		domain->place(all);
-		for (const OutsideForce& f : before)
-			changeForce(*domain, f.grain, -f.force, -f.torque, onset);
-		for (const OutsideForce& f : domain->outside.grains)
-			changeForce(*domain, f.grain, f.force, f.torque, onset);
-	}
-}
-
-// What the kinetic energy of this moment, which a leapfrog counts with half a kick, changes by is work of the force.
-void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<double> torque, Onset onset)
-{
-	Grain& p = shared.grains[k];
-	const double before = domain.kineticEnergyOf(k);
-	if (onset != Onset::AStepAgo) kick(shared, p, k, 0.5 * shared.dt);
-	domain.constraints.push(k, force, torque);
-	addToGrain(p, force, torque);
-	if (onset != Onset::AStepAgo) kick(shared, p, k, -0.5 * shared.dt);
-	if (onset != Onset::Before) domain.outside.work += before - domain.kineticEnergyOf(k);
-}
-
-void kick(const SharedState& shared, Grain& p, int k, double time)
-{
-	const double m = time * shared.inverseMass[k], i = time * shared.inverseInertia[k];
-	const Vec3<double>& c = shared.convective; // grows with the velocity before the kick
-	if (time > 0) p.vx *= 1 + time * c.x, p.vy *= 1 + time * c.y, p.vz *= 1 + time * c.z;
-	p.vx += m * p.fx, p.vy += m * p.fy, p.vz += m * p.fz;
-	p.wx += i * p.tx, p.wy += i * p.ty, p.wz += i * p.tz;
-	if (time < 0) p.vx /= 1 - time * c.x, p.vy /= 1 - time * c.y, p.vz /= 1 - time * c.z;
-}
-
-void Dynamics::kickAll(double time)
-{
+	const double shrunk = neck::shrunkRadius(shared.neck);
+	shared.radius.resize(count);
 	for (int k = 0; k < count; ++k)
-		kick(shared, shared.grains[k], k, time);
+		shared.radius[k] = shrunk * shared.grainRadius[k];
+	const auto [smallest, largest] = std::minmax_element(shared.radius.begin(), shared.radius.end());
+	shared.smallestRadius = *smallest;
+	shared.largestRadius = *largest;
+	shared.setLeastKick();
+	const Material& m = shared.material[shared.kind[0]];
+	const double r = shared.grainRadius[0];
+	shared.common = deriveShrunkPair(m, r, m, r, shared.pairs, shared.neck);
+	if (shared.neck > 0) shared.commonBond = deriveBond(m, r, m, r, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
+	shared.skin = std::max(0.8 * shared.smallestRadius, 1.1 * mostStretched(*this));
 }
 
 int Dynamics::domainCount() const
@@ -204,6 +143,17 @@ Dynamics::Counters Dynamics::counters() const
 		c.distanceChecks += domain->lists.distanceChecks;
 	}
 	return c;
+}
+
+// Until grains have moved by more than a radius or two.
+void Dynamics::setMostCells()
+{
+	if (!cell().on) return;
+	Box all;
+	for (const Group& group : shared.groups)
+		all.include(group.box);
+	const Vec3<double>& size = cell().size;
+	mostCells = { all.edge(0) / size.x + 1, all.edge(1) / size.y + 1, all.edge(2) / size.z + 1 };
 }
 
 /* The forces at the start, of contacts that have just been placed, without moving: a step of zero length turns nothing.
@@ -312,7 +262,8 @@ long Dynamics::runEvenly(long steps, const Vec3<double>& to)
 	return made;
 }
 
-// In a step a grain may go half the smallest radius along an axis: beyond that two of them pass each other unseen, and forces have long lost their meaning.
+// In a step a grain may go half the smallest radius along an axis: beyond that two of them pass each other unseen, and forces have long
+// lost their meaning.
 double Dynamics::fastestThatHolds() const { return 0.5 * shared.smallestRadius / shared.dt; }
 
 void Dynamics::read(std::vector<GrainMotion>& grains) const
@@ -362,6 +313,12 @@ Energies Dynamics::energies()
 		e.externalWork += domains[d]->outside.work;
 	}
 	return e;
+}
+
+double Dynamics::totalEnergy()
+{
+	const auto values = byChannel(energies());
+	return std::accumulate(values.begin(), values.end(), 0.);
 }
 
 } // namespace contact_law

@@ -1,10 +1,8 @@
 /* Many grains through many steps: leapfrog over the domains, neighbour lists, threads. Knows nothing of YADE.
- * What is only read from a run stands beside it, in free functions: contacts.hpp (contacts and bonds as they are now), exchange.hpp (contacts of other owners),
- * stability.hpp (the longest step), diagnosis.hpp (why a run broke down). */
+ * What is only read from a run stands beside it, in the free functions of contacts.hpp. */
 #pragma once
-#include "barrier.hpp"
 #include "domain.hpp"
-#include "shares.hpp"
+#include "threads.hpp"
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -23,8 +21,28 @@ struct GrainInput : GrainMotion {
 	int id = 0;                   // as its owner calls it
 };
 
-struct Inherited; // exchange.hpp
-struct InheritedContact;
+// Contacts that grains have when a run starts, in place of unstrained springs where they overlap; all of the moment of the grains'
+// positions.
+struct Inherited {
+	struct Energy { // that their owner counts for one [J]: now, and where a script has torn it apart since
+		double held = 0, letGo = 0;
+	};
+	struct Pair {
+		int first, second;              // grains as given
+		ContactHistory<double> history; // laboratory frame
+		double drag = 0, overlap = 0;
+		double neck = 0; // of a bond, over the grains' radius; 0: an ordinary contact
+		double rest = 0; // distance of the centres at which the bond was made [m]; 0: it is made now, without strain
+		Energy energy {};
+	};
+	struct OnPlane {
+		PlaneContact contact; // its grain as given; constants are left out
+		Energy energy {};
+	};
+	std::vector<Pair> contacts;
+	std::vector<OnPlane> onPlanes;
+};
+
 struct Booked; // contacts.hpp
 
 void copyMotion(const GrainMotion&, Grain&); // all but orientation and blocked degrees of freedom, which grains don't carry
@@ -71,43 +89,44 @@ public:
 
 	// Grains that overlap touch from the start, with unstrained springs (with a neck: bonded).
 	Dynamics(const Grains&, const Materials&, const Options&);
-	// Contacts as another owner leaves them.
+	// The one way to take a changed scene: its grains anew, with the contacts that another owner, or the run before, has exported.
+	// What the change brings to the contacts, or takes from them, is booked as disconnection.
 	Dynamics(const Grains&, const Materials&, const Options&, const Inherited&);
-	// As save() left it, to the bit; grains, materials and options must be those of the saved run. Motions are the saved ones, whatever the grains' are.
+	// As save() left it, to the bit; grains, materials and options must be those of the saved run. Motions are the saved ones,
+	// whatever the grains' are.
 	Dynamics(const Grains&, const Materials&, const Options&, const std::vector<double>& saved);
 	Dynamics(const Dynamics&) = delete; // its domains refer to it
 
 	// ---- what changes a run ----
 
-	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow (diagnosis.hpp says why).
-	 * In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
+	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow
+	 * (diagnoseGrain() says why). In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
 	// A plane that something else has moved, or given another velocity.
 	void setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity);
-	/* All outside forces from now on, by rising grain (those not given have none). Onset::Now: positions and velocities of this moment stay, and the force acts from here
-	 * on. Onset::Before: likewise, but it has acted until now too, on grains of another run, whose ledger has its work. Onset::AStepAgo: it has acted already in
-	 * the kick that the velocities of half a step ago came from, as YADE's functors leave them. */
-	enum class Onset { Now, Before, AStepAgo };
+	/* All outside forces from now on, by rising grain (those not given have none). Positions and velocities of this moment stay.
+	 * Onset::Now: the force acts from here on. Onset::Before: it has acted until now too, on the grains of another run, whose
+	 * ledger has its work. */
+	enum class Onset { Now, Before };
 	void setOutsideForces(const std::vector<OutsideForce>& given, Onset);
-	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped position), and from now on
-	 * `convective` (diagonal, 1/s) times their velocity accelerates grains. */
+	/* A periodic cell's mean velocity field x gradient: what is added to it now is added to every grain (by its unwrapped
+	 * position), and from now on `convective` (diagonal, 1/s) times their velocity accelerates grains. */
 	void setMeanField(const Vec3<double>& added, const Vec3<double>& convective);
-	/* All contacts become bonds of this neck, without strain where they are, beside existing bonds, which keep their own; all grains
-	 * shrink by the largest neck. What the contacts held is booked as disconnection. */
-	void sinter(double neck);
-	/* Steps of another length from now on [s]. Positions and velocities of this moment stay; the kinetic energy as a leapfrog counts it changes in second order of
-	 * the steps (time_step.cpp). */
+	/* Steps of another length from now on [s]. Positions and velocities of this moment stay; the kinetic energy as a leapfrog
+	 * counts it changes in second order of the steps (changes.cpp). */
 	void setStep(double dt);
 	void setThreads(int threads) { options.threads = threads; }
 	// Goes on booking where another run of these grains ended.
 	void continueFrom(const Booked&);
+	void bookDisconnection(double energy) { domains[0]->ledger.bookDisconnection(energy); } // [J]
 
 	// ---- its state ----
 
 	void read(std::vector<GrainMotion>&) const; // now; grains in the order they were given
 	Energies energies();
+	double totalEnergy();       // of all channels: constant but for what scripts give [J]
 	std::vector<double> save(); // the whole state (checkpoint.cpp)
 
 	// ---- for the free functions beside this class ----
@@ -133,13 +152,11 @@ private:
 	int domainCount() const;
 	int beginOf(int domain) const { return int(long(count) * domain / domainCount()); }
 	void shrinkGrains();
-	void bringVelocitiesToPositions();
 	void kickAll(double time);   // kick() of every grain [s]
 	void kickEarly(double time); // kickEarly() of every grain that has one [s]
 	void makeDomains();
 	void inherit(const Inherited&);
-	bool isLetGo(const Inherited&, const InheritedContact&, int i, int j, const ContactBefore&, ContactHistory<double>);
-	void completeInheritedStep();
+	bool place(const Inherited::Pair&);
 	template <class Archive> void transferLayout(Archive&);
 	template <class Archive> void transferState(Archive&);
 	void firstForces();

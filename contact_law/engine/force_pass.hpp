@@ -6,8 +6,9 @@
 #pragma once
 #include "../kernel/limits.hpp"
 #include "../kernel/numbers.hpp"
+#include "bond_pass.hpp"
+#include "neighbour_search.hpp"
 #include "pass_access.hpp"
-#include "several.hpp"
 
 namespace contact_law {
 
@@ -22,8 +23,8 @@ struct alignas(64) BatchBuffer {
 template <class Pack> struct Passes : PassAccess<Pack> {
 	using Access = PassAccess<Pack>;
 	using typename Access::Pair;
-	using Access::allLanes, Access::constants, Access::fetchGrains, Access::gatherPair, Access::keep, Access::load, Access::maskOf,
-	        Access::scatter, Access::spread, Access::store, Access::toImages, Access::width;
+	using Access::allLanes, Access::fetchGrains, Access::gatherPair, Access::keep, Access::load, Access::maskOf, Access::scatter,
+	        Access::spread, Access::store, Access::toImages, Access::width;
 
 	// First sweep: where `width` contacts stand, and how far they twisted.
 	template <unsigned mechanisms, bool periodic>
@@ -48,8 +49,9 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		buffer.events |= bitsOf(care) << at;
 	}
 
-	/* Second sweep: normal forces of all blocks of a batch side by side. They are one long chain of operations, and a processor that waits
-	 * for it doesn't look far enough ahead to begin with the next block. Of blocks behind the last one, what the buffers hold is taken. */
+	/* Second sweep: normal forces of all blocks of a batch side by side. They are one long chain of operations, and a processor
+	 * that waits for it doesn't look far enough ahead to begin with the next block. Of blocks behind the last one, what the buffers
+	 * hold is taken. */
 	using Batch = Several<Pack, batchSize>;
 	template <unsigned mechanisms, bool uniform>
 	static void sweepNormal(const ForcePass& pass, const PairConstants<Pack>& same, int first, BatchBuffer* buffers, int at)
@@ -114,7 +116,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 				slips = 0;
 			}
 		}
-		if constexpr (bool(mechanisms & Drag)) keepDrag(c, pass.drags[index], buffer, events, at, lost);
+		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, events, at, lost);
 		buffer.slips |= slips << at;
 		keep(h, block, at);
 	}
@@ -138,7 +140,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		const Vec3<Pack> velocity = load(buffer.velocity, at),
 		                 then = g.normal - (Pack(pass.dt) * g.inverseDistance) * velocity; // over the distance now
 		const Pointers<Pack> old { load(before.n1, at), load(before.n2, at) };
-		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of contact_events.cpp
+		// the functors save these; here they follow from the pointers before they turned, as in aStepAgo() of touching_pairs.cpp
 		const Displacements<Pack> aStepAgo { SlidingSpring::displacement(c, old, inverseRoot(dot(then, then)) * then),
 			RollingSpring::displacement(c, old), Pack::load(before.twist + at) };
 		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
@@ -154,8 +156,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 	}
 
 	// Events keep the step before, which they need.
-	static void keepDrag(
-	        const PairConstants<Pack>& c, DragBlock& d, const BatchBuffer& buffer, unsigned events, int at, DissipationOf<Pack>& lost)
+	static void keepDrag(DragBlock& d, const BatchBuffer& buffer, unsigned events, int at, DissipationOf<Pack>& lost)
 	{
 		const DragMoment<Pack> before { Pack::load(d.drag + at), Pack::load(d.overlap + at) };
 		const DragMoment<Pack> now { Pack::load(buffer.drag + at), Pack::load(buffer.overlap + at) };
@@ -190,7 +191,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 			const int count = pass.endBlock - first < batchSize ? pass.endBlock - first : batchSize;
 			ContactBlock* blocks = pass.blocks + first;
 			const auto c = [&](int b, int at) -> decltype(auto) {
-				return constants(pass, same, first + b, at, std::bool_constant<uniform>());
+				return Access::template constants<uniform>(pass, same, first + b, at);
 			};
 			for (int b = 0; b < count; ++b) {
 				fetchGrains(pass, first + b + grainsAhead);
@@ -227,27 +228,65 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		if constexpr (periodic) crossing.addTo(*pass.crossing);
 	}
 
-	static InstructionSet all(const char* name, decltype(InstructionSet::integrate) integrate)
+	// ---- the energies that contacts store ----
+
+	template <unsigned mechanisms, bool uniform>
+	[[gnu::flatten]] static void energies(const ForcePass& pass, StoredEnergy<double>& sums)
 	{
-		InstructionSet set { name, {}, {}, &sumOfProduct, integrate, {}, nullptr, {}, {} };
-		fill<0>(set);
-		return set;
+		const PairConstants<Pack> same = Access::spread(*pass.uniform);
+		const Images<Pack> images(*pass.cell); // once a step at most: open scenes have their images here too, without a shift
+		StoredEnergy<Pack> sum { Pack(0.), Pack(0.), Pack(0.), Pack(0.) };
+		for (int b = pass.firstBlock; b < pass.endBlock; ++b) {
+			Access::template fetchBlock<uniform>(pass, b + blocksAhead);
+			Access::fetchGrains(pass, b + grainsAhead);
+			ContactBlock& block = pass.blocks[b];
+			for (int at = 0; at < lanes; at += Access::width) {
+				const PairConstants<Pack> c = Access::template constants<uniform>(pass, same, b, at);
+				auto pair = Access::gatherPair(pass.grains, block, at);
+				Access::toImages(images, pair);
+				const ContactGeometry<Pack> g = geometryOf(pair.separation, c.radius1 + c.radius2);
+				const ContactHistory<Pack> h { { Access::load(block.n1, at), Access::load(block.n2, at) },
+					Pack::load(block.twist + at) };
+				const StoredEnergy<Pack> e = storedEnergy(
+				        mechanisms, c, contactForces<mechanisms & AllSprings>(c, g, h, Vec3<Pack> {}), h.twist);
+				Access::addUsed(e, block, at, pass.dummy, sum);
+			}
+		}
+		Access::sumLanes(sum, sums);
+	}
+
+	static void addTo(InstructionSet& set)
+	{
+		set.sumOfProduct = [](double a, double b, double c) { return a * b + c; };
+		add<0>(set);
 	}
 
 private:
-	static double sumOfProduct(double a, double b, double c) { return a * b + c; }
-
-	template <unsigned mechanisms, bool uniform> static void fill(InstructionSet& set)
+	template <unsigned mechanisms, bool uniform> static void add(InstructionSet& set)
 	{
 		set.forces[mechanisms][uniform][false] = &forces<mechanisms, uniform, false>;
 		set.forces[mechanisms][uniform][true] = &forces<mechanisms, uniform, true>;
+		set.energies[mechanisms][uniform] = &energies<mechanisms, uniform>;
 	}
-	template <unsigned mechanisms> static void fill(InstructionSet& set)
+	// All combinations of mechanisms from this one on.
+	template <unsigned mechanisms> static void add(InstructionSet& set)
 	{
-		fill<mechanisms, false>(set);
-		fill<mechanisms, true>(set);
-		if constexpr (mechanisms < Everything) fill<mechanisms + 1>(set);
+		add<mechanisms, false>(set);
+		add<mechanisms, true>(set);
+		if constexpr (mechanisms < Everything) add<mechanisms + 1>(set);
 	}
 };
+
+// All passes, compiled for one instruction set.
+template <class Pack> InstructionSet allPasses(const char* name, decltype(InstructionSet::integrate) integrate)
+{
+	InstructionSet set {};
+	set.name = name;
+	set.integrate = integrate;
+	Passes<Pack>::addTo(set);
+	BondPasses<Pack>::addTo(set);
+	NeighbourPasses<Pack>::addTo(set);
+	return set;
+}
 
 } // namespace contact_law

@@ -35,8 +35,8 @@ namespace {
 	}
 }
 
-/* Branches are cut across their longest axis, the first of them so that each side has half of the grains: of two like aggregates each is a side, and no contact crosses the
- * border between them. */
+/* Branches are cut across their longest axis, the first of them so that each side has half of the grains: of two like aggregates each
+ * is a side, and no contact crosses the border between them. */
 void Dynamics::orderGrains(const Positions& positions)
 {
 	original.resize(count);
@@ -97,8 +97,8 @@ namespace {
 	}
 }
 
-/* Where groups have spread (fragments that fly apart), grains are put into a new order: neighbours lie close again. Between two steps; nothing else changes but the order in
- * which contacts add their forces. */
+/* Where groups have spread (fragments that fly apart), grains are put into a new order: neighbours lie close again. Between two steps;
+ * nothing else changes but the order in which contacts add their forces. */
 void Dynamics::reorder()
 {
 	std::vector<Vec3<double>> positions(count);

@@ -1,5 +1,5 @@
-/* What a domain has booked since the start: energies that its contacts took out of the motion, and how often what happened (MODEL.md, "The integrator and the ledger").
- * Only contacts that are counted here are booked (Ownership). */
+/* What a domain has booked since the start: energies that its contacts took out of the motion, and how often what happened (MODEL.md,
+ * "The integrator and the ledger"). Only contacts that are counted here are booked (Ownership). */
 #pragma once
 #include "shared_state.hpp"
 
@@ -82,7 +82,6 @@ public:
 
 	// ---- between steps ----
 
-	void forgetEarlyKicks() { early.clear(); }
 	void renumber(const std::vector<int>& to) // new indices of grains
 	{
 		for (EarlyKick& kick : early)
@@ -103,7 +102,6 @@ public:
 	{
 		lost += dissipated, counts += counted, boundary.done += boundaryWork;
 	}
-	void doubleBoundaryWork() { boundary.done *= 2; } // Dynamics::completeInheritedStep()
 
 	// ---- so far [J] ----
 

@@ -90,13 +90,12 @@ template <class Pack> struct NeighbourPasses {
 		return count;
 	}
 
-	static InstructionSet addTo(InstructionSet set)
+	static void addTo(InstructionSet& set)
 	{
 		set.addInBox[false] = &addInBox<false>;
 		set.addInBox[true] = &addInBox<true>;
 		set.closeGrains[false] = &closeGrains<false>;
 		set.closeGrains[true] = &closeGrains<true>;
-		return set;
 	}
 };
 

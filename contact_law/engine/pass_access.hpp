@@ -1,6 +1,7 @@
-// How passes over many pairs read packs of `width` contacts out of grains and blocks, and write them back. gather(), scatterAdd() and
-// scatterAddInOrder() are each instruction set's own.
+// How passes over many pairs read packs of `width` contacts out of grains and blocks, and write them back; what they have in common.
+// gather(), scatterAdd() and scatterAddInOrder() are each instruction set's own.
 #pragma once
+#include "../kernel/numbers.hpp"
 #include "arrays.hpp"
 #include <type_traits>
 
@@ -60,12 +61,10 @@ template <class Pack> struct PassAccess {
 	// Constants of which field(k) are the kept ones.
 	template <class T, class Field> static PairConstants<T> fromKept(const Field& field)
 	{
-		return fromKept<T>(field, std::make_index_sequence<keptCount>());
-	}
-	template <class T, class Field, std::size_t... k> static PairConstants<T> fromKept(const Field& field, std::index_sequence<k...>)
-	{
 		PairConstants<T> to {};
-		((to.*keptConstants<T>[k] = field(k)), ...);
+#pragma GCC unroll 32
+		for (int k = 0; k < keptCount; ++k)
+			to.*keptConstants<T>[k] = field(k);
 		to.pullOffOverlap = T(normal::pullOffRatio) / to.inverseEquilibriumOverlap;
 		to.criticalTwisting = T(criticalTwistingAngle);
 		return to;
@@ -132,13 +131,13 @@ template <class Pack> struct PassAccess {
 		h.twist.store(block.twist + at);
 	}
 
-	static const PairConstants<Pack>& constants(const ForcePass&, const PairConstants<Pack>& same, int, int, std::true_type)
+	// same: the constants of every pair of a uniform scene.
+	template <bool uniform> static decltype(auto) constants(const ForcePass& pass, const PairConstants<Pack>& same, int index, int at)
 	{
-		return same;
-	}
-	static PairConstants<Pack> constants(const ForcePass& pass, const PairConstants<Pack>&, int index, int at, std::false_type)
-	{
-		return fromKept<Pack>([&](int k) { return Pack::load(pass.constants[index].field[k] + at); });
+		if constexpr (uniform)
+			return (same);
+		else
+			return fromKept<Pack>([&](int k) { return Pack::load(pass.constants[index].field[k] + at); });
 	}
 
 	// The kicks of `width` contacts to their grains, of which the lists are in the order of first grains; returns the forces on these.
@@ -167,5 +166,96 @@ template <class Pack> struct PassAccess {
 			to.*storedMembers<double>[k] = sumOf(from.*storedMembers<Pack>[k]);
 	}
 };
+
+// ---- several packs side by side as one number: while one of them waits for a result, the others go on ----
+
+template <class Pack, int count> struct Several {
+	Pack part[count];
+
+	Several() = default;
+	Several(double x)
+	{
+		for (Pack& one : part)
+			one = Pack(x);
+	}
+	template <class Of> static Several each(Of&& of) // of(k): part k
+	{
+		Several all;
+		for (int k = 0; k < count; ++k)
+			all.part[k] = of(k);
+		return all;
+	}
+};
+template <class Pack, int count> struct SeveralMasks {
+	MaskOf<Pack> part[count];
+};
+
+template <class P, int n> inline Several<P, n> operator+(const Several<P, n>& a, const Several<P, n>& b)
+{
+	return Several<P, n>::each([&](int k) { return a.part[k] + b.part[k]; });
+}
+template <class P, int n> inline Several<P, n> operator-(const Several<P, n>& a, const Several<P, n>& b)
+{
+	return Several<P, n>::each([&](int k) { return a.part[k] - b.part[k]; });
+}
+template <class P, int n> inline Several<P, n> operator*(const Several<P, n>& a, const Several<P, n>& b)
+{
+	return Several<P, n>::each([&](int k) { return a.part[k] * b.part[k]; });
+}
+template <class P, int n> inline Several<P, n> operator/(const Several<P, n>& a, const Several<P, n>& b)
+{
+	return Several<P, n>::each([&](int k) { return a.part[k] / b.part[k]; });
+}
+template <class P, int n> inline Several<P, n> operator-(const Several<P, n>& a)
+{
+	return Several<P, n>::each([&](int k) { return -a.part[k]; });
+}
+template <class P, int n> inline Several<P, n> root(const Several<P, n>& a)
+{
+	return Several<P, n>::each([&](int k) { return root(a.part[k]); });
+}
+
+template <class P, int n> inline SeveralMasks<P, n> operator<(const Several<P, n>& a, const Several<P, n>& b)
+{
+	SeveralMasks<P, n> all;
+	for (int k = 0; k < n; ++k)
+		all.part[k] = a.part[k] < b.part[k];
+	return all;
+}
+template <class P, int n> inline bool anyOf(const SeveralMasks<P, n>& masks)
+{
+	bool any = false;
+	for (const auto& one : masks.part)
+		any |= anyOf(one);
+	return any;
+}
+template <class P, int n> inline Several<P, n> choose(const SeveralMasks<P, n>& m, const Several<P, n>& yes, const Several<P, n>& no)
+{
+	return Several<P, n>::each([&](int k) { return choose(m.part[k], yes.part[k], no.part[k]); });
+}
+
+// ---- kick and drift of grains one by one; a template over the pack only so that each instruction set compiles its own ----
+
+// v += F dt/m, w += T dt/I, x += v dt, forces to zero; the range grows by the velocities.
+template <class Pack>
+inline void integrateOneByOne(
+        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
+{
+	VelocityRange met = range;
+	for (Grain* g = begin; g < end; ++g, ++inverseMass, ++inverseInertia) {
+		const double m = *inverseMass * dt, i = *inverseInertia * dt;
+		const double* f = &g->fx;
+		for (int k = 0; k < 3; ++k)
+			met.kick[k] = std::max(met.kick[k], std::abs(f[k] * m));
+		g->vx += g->fx * m, g->vy += g->fy * m, g->vz += g->fz * m;
+		g->wx += g->tx * i, g->wy += g->ty * i, g->wz += g->tz * i;
+		g->x += g->vx * dt, g->y += g->vy * dt, g->z += g->vz * dt;
+		g->fx = g->fy = g->fz = g->tx = g->ty = g->tz = 0;
+		const double* v = &g->vx;
+		for (int k = 0; k < 3; ++k)
+			met.least[k] = std::min(met.least[k], v[k]), met.most[k] = std::max(met.most[k], v[k]);
+	}
+	range = met;
+}
 
 } // namespace contact_law

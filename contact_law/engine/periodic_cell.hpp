@@ -24,7 +24,8 @@ struct PeriodicCell {
 		inverse = { 1 / size.x, 1 / size.y, 1 / size.z };
 		rate = newRate;
 	}
-	// Every pair's distance is that of its nearest images, and no grain meets two images of another, in cells of at least twice the reach of a pair.
+	// Every pair's distance is that of its nearest images, and no grain meets two images of another, in cells of at least twice the
+	// reach of a pair.
 	bool holds(double reach) const
 	{
 		return size.x >= 2 * reach && size.y >= 2 * reach && size.z >= 2 * reach && std::isfinite(size.x + size.y + size.z);
@@ -44,7 +45,8 @@ template <class T> struct Images {
 	static Vec3<T> spread(const Vec3<double>& v) { return { T(v.x), T(v.y), T(v.z) }; }
 	static Vec3<T> times(const Vec3<T>& a, const Vec3<T>& b) { return { a.x * b.x, a.y * b.y, a.z * b.z }; }
 
-	// Cells by which the first of two grains is to be shifted to be the nearest to the second; given: the first's position less the second's.
+	// Cells by which the first of two grains is to be shifted to be the nearest to the second; given: the first's position less the
+	// second's.
 	Vec3<T> shift(const Vec3<T>& separation) const
 	{
 		return { -nearest(separation.x * inverse.x), -nearest(separation.y * inverse.y), -nearest(separation.z * inverse.z) };
@@ -68,8 +70,9 @@ inline Image nearestImage(const PeriodicCell& cell, Vec3<double>& separation)
 	return { s, images.velocity(s) };
 }
 
-/* What a domain's crossing contacts do against the moving boundaries. An impulse J on the first of two grains does the work J.(v1 - v2) on them; the contact's
- * springs see J.(v1 - v2 + shift rate). The rest is the boundaries'. As elsewhere in the ledger half of each kick belongs before its instant, half after it. */
+/* What a domain's crossing contacts do against the moving boundaries. An impulse J on the first of two grains does the work J.(v1 - v2)
+ * on them; the contact's springs see J.(v1 - v2 + shift rate). The rest is the boundaries'. As elsewhere in the ledger half of each
+ * kick belongs before its instant, half after it. */
 class BoundaryWork {
 public:
 	Vec3<double> kicks { 0, 0, 0 }; // sum over the contacts now of shift times force

@@ -41,12 +41,6 @@ void PlaneContacts::place(const PlaneContact& contact)
 	if (owns(contact.grain)) contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), contact), contact);
 }
 
-void PlaneContacts::inherit(const PlaneContact& contact, const Vec3<double>& force)
-{
-	place(contact);
-	if (owns(contact.grain)) after[contact.plane] = after[contact.plane] + 0.5 * force;
-}
-
 Plane PlaneContacts::planeOf(const PlaneContact& c) const
 {
 	const PlaneInput& plane = s.planes[c.plane];

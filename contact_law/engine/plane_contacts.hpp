@@ -1,6 +1,6 @@
-/* The planes of a scene (half-spaces, kernel/contact_step.hpp) and a domain's grains on them. Few grains touch a plane: each of these contacts is a call of the kernel's
- * scalar law in each step, slips, formation and breaking included, as the functors make it. A plane concerns the domain that has the grain and no other; each domain
- * moves the planes on by itself, all by the same numbers. */
+/* The planes of a scene (half-spaces, kernel/contact_step.hpp) and a domain's grains on them. Few grains touch a plane: each of these
+ * contacts is a call of the kernel's scalar law in each step, slips, formation and breaking included, as the functors make it. A plane
+ * concerns the domain that has the grain and no other; each domain moves the planes on by itself, all by the same numbers. */
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "ledger.hpp"
@@ -47,9 +47,7 @@ public:
 		takeVelocities();
 	}
 	void place(const PlaneContact&); // if its grain is owned
-	// One that another owner of the grains has carried to a step before the positions, with the force on the grain then.
-	void inherit(const PlaneContact&, const Vec3<double>& force);
-	void takeVelocities(); // as they are now, for drag in the next step
+	void takeVelocities();           // as they are now, for drag in the next step
 	StoredEnergy<double> energies() const;
 	// As one of own grains is now, drag as it was in the latest step.
 	ContactGeometry<double> geometryOf(const PlaneContact&) const; // its normal: towards the grain

@@ -2,20 +2,49 @@
 #pragma once
 #include "../kernel/blocked.hpp"
 #include "../kernel/contact_step.hpp"
-#include "bond_list.hpp"
-#include "contact_list.hpp"
-#include "groups.hpp"
-#include "orientations.hpp"
+#include "contact_lists.hpp"
+#include "pair_lists.hpp"
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace contact_law {
 
-// Which grains of a contact are a domain's own. A border contact stands in both domains: it is counted and booked where its first grain is owned.
+// Which grains of a contact are a domain's own. A border contact stands in both domains: it is counted and booked where its first grain is
+// owned.
 enum Ownership { Interior, FirstOwned, SecondOwned };
 constexpr Ownership ownerships[] = { Interior, FirstOwned, SecondOwned }, counted[] = { Interior, FirstOwned };
 constexpr bool ownsFirst(Ownership o) { return o != SecondOwned; }
 constexpr bool ownsSecond(Ownership o) { return o != FirstOwned; }
 constexpr bool isCounted(Ownership o) { return ownsFirst(o); }
+
+// The constants of a material, for those who go through them all.
+struct MaterialRow {
+	const char* name;
+	double Material::*member;
+};
+constexpr MaterialRow materialList[] = {
+	{ "young", &Material::young },
+	{ "poisson", &Material::poisson },
+	{ "density", &Material::density },
+	{ "surfaceEnergy", &Material::surfaceEnergy },
+	{ "criticalRolling", &Material::criticalRolling },
+	{ "viscoelasticTime", &Material::viscoelasticTime },
+};
+static_assert(sizeof(Material) == std::size(materialList) * sizeof(double), "every constant of Material has its row");
+
+// In messages: the fewest digits that read back as the same number.
+inline std::string textOf(double number)
+{
+	char buffer[32];
+	for (int digits = 6; digits <= 17; ++digits) {
+		std::snprintf(buffer, sizeof buffer, "%.*g", digits, number);
+		if (std::strtod(buffer, nullptr) == number) break;
+	}
+	return buffer;
+}
 
 // A half-space of its own material, bounded by a plane across an axis, which rests or moves at a velocity of its own.
 struct PlaneInput {

@@ -1,18 +1,12 @@
 #include "touching_pairs.hpp"
 #include <algorithm>
+#include <tuple>
 
 namespace contact_law {
 
 namespace {
 	constexpr double sortingCost = 1; // of a contact, over what one costs a step more for being out of order (measured)
 
-	// Without strain, and without constants yet.
-	Bond newBond(int i, int j, const Vec3<double>& separation)
-	{
-		Bond bond { i, j, {}, 0, {} };
-		bond.rest = contact_law::newBond(separation, bond.history);
-		return bond;
-	}
 }
 
 TouchingPairs::TouchingPairs(SharedState& shared, int begin_, int end_, int dummy_)
@@ -24,18 +18,12 @@ TouchingPairs::TouchingPairs(SharedState& shared, int begin_, int end_, int dumm
         , end(end_)
         , dummy(dummy_)
 {
-	placeDummies();
+	s.grains[dummy] = s.grains[dummy + 1] = Grain {};
+	s.grains[dummy].x = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
 	for (ContactList& list : contacts)
 		list.setUnusedConstants(s.common);
 	for (BondList& list : bonds)
 		list.setUnused(s.commonBond, s.grains[dummy].x);
-}
-
-void TouchingPairs::placeDummies()
-{
-	s.grains[dummy] = Grain {};
-	s.grains[dummy + 1] = Grain {};
-	s.grains[dummy].x = s.common.radius1 + s.common.radius2 - s.common.equilibriumOverlap;
 }
 
 int TouchingPairs::count() const
@@ -75,45 +63,11 @@ void TouchingPairs::placeBonds(PairLists& lists, const PeriodicCell& cell)
 		const double reach =
 		        (1 + 1e-12) * (s.grainRadius[i] + s.grainRadius[j]); // those that a script has placed side by side, too
 		if (dot(separation, separation) > reach * reach) return;
-		Bond bond = newBond(i, j, separation);
-		bond.constants = s.bondOf(i, j, s.neck);
+		Bond bond { i, j, {}, 0, s.bondOf(i, j, s.neck) };
+		bond.rest = newBond(separation, bond.history);
 		bonds[ownershipOf(i, j)].append(bond);
 	});
 	markIn(lists);
-}
-
-// Without contacts that a script has torn apart since the latest step.
-TouchingPairs::AllBonds TouchingPairs::sintered(const PeriodicCell& cell, double neck) const
-{
-	AllBonds all;
-	for (const Ownership o : ownerships) {
-		for (int slot = 0; slot < bonds[o].size(); ++slot)
-			if (bonds[o].isUsed(slot)) all[o].push_back(bonds[o].get(slot, s.commonBond));
-		for (int slot = 0; slot < contacts[o].size(); ++slot) {
-			if (!contacts[o].isUsed(slot)) continue;
-			const Contact c = s.contactOf(contacts[o], slot);
-			const Vec3<double> separation = s.separationOf(cell, c.i, c.j);
-			if (normal::beyondPullOff(c.constants, geometryOf(separation, c.constants.radius1 + c.constants.radius2))) continue;
-			all[o].push_back(newBond(c.i, c.j, separation));
-			all[o].back().constants.neck = neck;
-		}
-	}
-	return all;
-}
-
-void TouchingPairs::setBonds(const AllBonds& all)
-{
-	placeDummies();
-	for (const Ownership o : ownerships) {
-		contacts[o].clear();
-		contacts[o].setUnusedConstants(s.common);
-		bonds[o] = BondList(s.uniformBonds(), dummy);
-		bonds[o].setUnused(s.commonBond, s.grains[dummy].x);
-		for (Bond bond : all[o]) {
-			bond.constants = s.bondOf(bond.i, bond.j, bond.constants.neck);
-			bonds[o].append(bond);
-		}
-	}
 }
 
 TouchingPairs::Contents TouchingPairs::takeOut()
@@ -179,7 +133,8 @@ void TouchingPairs::takeVelocities(const PeriodicCell& cell)
 		}
 }
 
-/* A contact that formed costs more until it is sorted in, sorting costs in proportion to all of them: both together least when the first sum has grown to the second. */
+/* A contact that formed costs more until it is sorted in, sorting costs in proportion to all of them: both together least when the
+ * first sum has grown to the second. */
 void TouchingPairs::sortIfWorthwhile()
 {
 	++order.stepsSinceSort;
@@ -209,6 +164,168 @@ void TouchingPairs::findCompleted()
 		for (int slot = last - 1; slot >= batch * batchSize * lanes; --slot)
 			if (list.isUsed(slot)) next = list.first(slot);
 	}
+}
+
+// ---- events ----
+
+namespace {
+	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
+	void write(const ContactStepResult& r, LaneForces& out, int k)
+	{
+		write(r.force, out.force, k);
+		write(r.torque1, out.torque1, k);
+		write(r.torque2, out.torque2, k);
+	}
+
+	/* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and
+	 * the pointers of `h` had not turned yet. Constants: of a contact or of a bond. */
+	template <class Constants>
+	ContactBefore aStepAgo(const Constants& c, double rest, const Vec3<double>& then, const ContactHistory<double>& h)
+	{
+		const double apart = std::sqrt(dot(then, then));
+		ContactBefore before;
+		before.touching = true;
+		before.overlap = rest - apart;
+		before.sliding = SlidingSpring::displacement(c, h.pointers, (1 / apart) * then);
+		before.rolling = RollingSpring::displacement(c, h.pointers);
+		before.twist = h.twist;
+		return before;
+	}
+
+	void turnPointers(ContactHistory<double>& h, const ContactMotion& m)
+	{
+		h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+	}
+}
+
+ContactEvents::ContactEvents(SharedState& shared, const PeriodicCell& cell_, PairLists& lists_, TouchingPairs& touching_, Ledger& ledger_)
+        : s(shared)
+        , cell(cell_)
+        , lists(lists_)
+        , touching(touching_)
+        , ledger(ledger_)
+{
+}
+
+// Positions move by velocity * dt, and by where a script has put the grains since.
+Vec3<double> ContactEvents::separationAStepAgo(int i, int j, const ContactMotion& m) const
+{
+	Vec3<double> then = m.separation - m.dt * m.velocity;
+	if (s.displaced.empty()) return then;
+	then = then - (s.displaced[i] - s.displaced[j]);
+	nearestImage(cell, then);
+	return then;
+}
+
+void ContactEvents::book(int i, int j, const ContactStepResult& r, const ContactMotion& m, const Image& image, Ownership o)
+{
+	ledger.book(r, m, image, o);
+	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
+	if (ownsFirst(o)) ledger.keep({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
+	if (ownsSecond(o)) ledger.keep({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
+}
+
+// Kicks of a contact that no pass scatters.
+void ContactEvents::addAlone(int i, int j, const ContactStepResult& r, const Image& image, Ownership o)
+{
+	if (ownsFirst(o)) {
+		addToGrain(s.grains[i], r.force, r.torque1);
+		ledger.addCrossing(image, r.force);
+	}
+	if (ownsSecond(o)) addToGrain(s.grains[j], -r.force, r.torque2);
+}
+
+void ContactEvents::ofSlot(Ownership o, int slot, const ContactBlock& old, LaneForces& out)
+{
+	ContactList& list = touching.contacts[o];
+	const int k = slot % lanes, i = list.first(slot), j = list.second(slot);
+	Image image;
+	const ContactMotion m = s.motionOf(cell, i, j, image);
+	const PairConstants<double> constants = s.constantsOf(i, j);
+	ContactHistory<double> h = historyIn(old, k);
+
+	ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, separationAStepAgo(i, j, m), h);
+	if (s.hasDrag()) {
+		before.velocity = list.velocityBefore(slot);
+		before.drag = list.drag(slot);
+	}
+
+	turnPointers(h, m);
+	const ContactStepResult r = contactStepWith[s.mechanisms](constants, s.limit, m, before, h);
+	book(i, j, r, m, image, o);
+	if (r.touching) {
+		write(r, out, k);
+		list.writeHistory(slot, h);
+		list.writeDrag(slot, r.now.drag, r.geometry.overlap, m.velocity);
+		return;
+	}
+	// the pass adds by the slot's indices, which are those of the dummies now: its kicks still go to its grains
+	addAlone(i, j, r, image, o);
+	write(ContactStepResult {}, out, k);
+	list.markUnused(slot);
+	ledger.counts.broken += isCounted(o);
+	touching.noteChange();
+	lists.part(i, j);
+}
+
+void ContactEvents::ofSlot(Ownership o, int slot, const BondBlock& old, LaneForces& out)
+{
+	BondList& list = touching.bonds[o];
+	const int k = slot % lanes, i = list.first(slot), j = list.second(slot);
+	Image image;
+	const ContactMotion m = s.motionOf(cell, i, j, image);
+	const Bond bond = list.get(slot, s.commonBond);
+	const BondConstants<double>& b = bond.constants;
+	const PairConstants<double> constants = s.constantsOf(i, j);
+	ContactHistory<double> h = historyIn(old, k);
+
+	const ContactBefore before = aStepAgo(b, bond.rest, separationAStepAgo(i, j, m), h);
+	turnPointers(h, m);
+	const BondStepResult result = bondStepWith[s.mechanisms](b, constants, m, before, bond.rest, h);
+	if (result.bonded) return; // by rounding: it doesn't break after all, and the forces of the pass stand
+	const ContactStepResult& r = result.contact;
+	book(i, j, r, m, image, o);
+	ledger.counts.brokenBonds[result.mode] += isCounted(o);
+	addAlone(i, j, r, image, o);
+	write(ContactStepResult {}, out, k);
+	list.markUnused(slot);
+	touching.noteChange();
+	if (r.touching)
+		touching.contacts[o].append({ i, j, h, constants, r.now.drag, r.geometry.overlap, m.velocity });
+	else
+		lists.part(i, j);
+}
+
+void ContactEvents::formContacts()
+{
+	std::vector<NeighbourPair> forming = lists.overlapping(cell);
+	const auto key = [this](const NeighbourPair& p) {
+		return std::make_tuple(touching.ownershipOf(p.first(), p.second()), p.first(), p.second());
+	};
+	std::sort(forming.begin(), forming.end(), [&](const NeighbourPair& a, const NeighbourPair& b) { return key(a) < key(b); });
+	for (const NeighbourPair& pair : forming)
+		if (formContact(pair)) lists.touch(pair.first(), pair.second());
+}
+
+// Returns whether it did.
+bool ContactEvents::formContact(const NeighbourPair& pair)
+{
+	const int i = pair.first(), j = pair.second();
+	const Ownership o = touching.ownershipOf(i, j);
+	Image image;
+	const ContactMotion m = s.motionOf(cell, i, j, image);
+	Contact c { i, j, {}, s.constantsOf(i, j) };
+	const auto r = contactStepWith[s.mechanisms](c.constants, s.limit, m, ContactBefore {}, c.history);
+	if (!r.touching) return false;
+	c.drag = r.now.drag;
+	c.overlap = r.geometry.overlap;
+	c.velocity = m.velocity;
+	ledger.counts.formed += isCounted(o);
+	touching.noteChange();
+	book(i, j, r, m, image, o);
+	addAlone(i, j, r, image, o);
+	touching.contacts[o].append(c);
+	return true;
 }
 
 } // namespace contact_law

@@ -1,7 +1,7 @@
-// The contacts and bonds of a domain's grains: where they lie, by ownership, and in which order. (Neighbours that do not touch: pair_lists.hpp.)
+// The contacts and bonds of a domain's grains: where they lie, by ownership, and in which order. (Neighbours that do not touch:
+// pair_lists.hpp.)
 #pragma once
-#include "pair_lists.hpp"
-#include "shared_state.hpp"
+#include "ledger.hpp"
 
 namespace contact_law {
 
@@ -22,10 +22,7 @@ public:
 	void place(const Bond&);
 	void placeOverlapping(PairLists&, const PeriodicCell&); // contacts of all pairs that overlap already, with unstrained springs
 	void placeBonds(PairLists&, const PeriodicCell&);       // between all grains that touched before they shrank
-	using AllBonds = std::array<std::vector<Bond>, 3>;
-	AllBonds sintered(const PeriodicCell&, double neck) const; // the bonds, and all contacts as bonds of this neck
-	void setBonds(const AllBonds&);                            // in place of all bonds and contacts
-	struct Contents {                                          // all of them before grains changed their order
+	struct Contents {                                       // all of them before grains changed their order
 		std::vector<ContactList> contacts;
 		std::vector<BondList> bonds;
 	};
@@ -49,11 +46,40 @@ public:
 
 private:
 	template <class List, class Get> void place(const List&, const std::vector<int>& to, List (&own)[3], const Get&);
-	void placeDummies();
 
 	SharedState& s;
 	int begin, end, dummy;
 	std::vector<int> completed;
+};
+
+/* Events of a domain's contacts in a step, one by one: contacts that form or break, bonds that break, and what a pass leaves to the
+ * kernel's scalar law (cut springs, slips after a script's move, overlaps beyond the fit). A border contact goes through the same event
+ * in both domains, from the same numbers to the same end. */
+class ContactEvents {
+public:
+	ContactEvents(SharedState&, const PeriodicCell&, PairLists&, TouchingPairs&, Ledger&);
+
+	// Of the contacts (bonds) `which` (bits) of a block; `before`: their history a step ago. Their forces in `out` are replaced.
+	template <class Block> void of(Ownership o, int block, unsigned which, const Block& before, LaneForces& out)
+	{
+		for (int k = 0; k < lanes; ++k)
+			if (which & (1u << k)) ofSlot(o, block * lanes + k, before, out);
+	}
+	void formContacts(); // of pairs that overlap now
+
+private:
+	void ofSlot(Ownership, int slot, const ContactBlock& before, LaneForces& out);
+	void ofSlot(Ownership, int slot, const BondBlock& before, LaneForces& out);
+	bool formContact(const NeighbourPair&);
+	Vec3<double> separationAStepAgo(int i, int j, const ContactMotion&) const;
+	void book(int i, int j, const ContactStepResult&, const ContactMotion&, const Image&, Ownership);
+	void addAlone(int i, int j, const ContactStepResult&, const Image&, Ownership);
+
+	SharedState& s;
+	const PeriodicCell& cell;
+	PairLists& lists;
+	TouchingPairs& touching;
+	Ledger& ledger;
 };
 
 } // namespace contact_law

@@ -41,7 +41,7 @@ inline PairConstants<double> deriveShrunkPair(
 }
 
 /* The constants of a bond, listed once: name and what it is. From this list follow the members below, the attributes of JKRWadaBond,
- * their copying, and what the engine holds of bonds in scenes with several kinds of pairs (engine/bond_list.hpp). Names that the
+ * their copying, and what the engine holds of bonds in scenes with several kinds of pairs (engine/contact_lists.hpp). Names that the
  * mechanisms read are those of PairConstants. */
 #define CONTACT_LAW_BOND_CONSTANTS(_)                                                                                                      \
 	_(radius1, "Radius of the first grain before sintering [m].")                                                                      \

@@ -1,7 +1,7 @@
 // The energy channels in O.energy (kernel/energy_channels.hpp).
 #pragma once
 #include "../kernel/energy_channels.hpp"
-#include "OncePerStep.hpp"
+#include "SceneShapes.hpp"
 #include <array>
 #include <cstring>
 

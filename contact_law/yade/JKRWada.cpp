@@ -1,9 +1,10 @@
 #include "JKRWada.hpp"
+#include "../engine/dynamics.hpp"
 #include "../kernel/bond.hpp"
 #include "../kernel/blocked.hpp"
-#include "KernelVectors.hpp"
-#include "RunningLoop.hpp"
+#include "Refusal.hpp"
 #include <core/Body.hpp>
+#include <limits>
 #include <sstream>
 
 namespace yade {
@@ -137,6 +138,27 @@ contact_law::ContactBefore JKRWadaPhys::before() const
 	return { touching, overlap, dragForce, toKernel(slidingDisplacement), toKernel(rollingDisplacement), twist, toKernel(velocity) };
 }
 
+Real JKRWadaPhys::storedEnergy() const
+{
+	const PairConstants<double> c = constants->forKernel();
+	const contact_law::ContactGeometry<double> g { {}, 0, overlap };
+	if (bonded || contact_law::normal::beyondPullOff(c, g)) return energyWhenTorn();
+	contact_law::ContactForces<double> f = contact_law::ContactForces<double>::none();
+	f.slidingDisplacement = toKernel(slidingDisplacement), f.rollingDisplacement = toKernel(rollingDisplacement);
+	contact_law::normal::addForces(c, g, f);
+	return total(contact_law::storedEnergy(unsigned(springs), c, f, twist));
+}
+
+// Of a bond, of each mode no more than what breaks it.
+Real JKRWadaPhys::energyWhenTorn() const
+{
+	if (!bonded) return contact_law::letGo(unsigned(springs), constants->forKernel(), before());
+	const contact_law::BondConstants<double> b = bond->forKernel();
+	const auto energy = [&b](Real stiffness, Real squared) { return std::min(0.5 * stiffness * squared, b.breakingEnergy); };
+	return energy(b.normalStiffness, overlap * overlap) + energy(b.slidingStiffness, slidingDisplacement.squaredNorm())
+	        + energy(b.rollingStiffness, rollingDisplacement.squaredNorm()) + energy(b.twistingStiffness, twist * twist);
+}
+
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
         const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
 {
@@ -176,21 +198,28 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 		if (interaction->isReal() && wallOf(now, interaction->getId1())) throw std::invalid_argument(bondsOfPlanes);
 	if (now.iter < bondsBefore && sinteredEarly == 0) sinteredEarly = neck > 0 ? neck : neckNow;
 	neck = std::max(neck, neckNow);
-	for (const auto& interaction : *now.interactions) {
+	sinterContacts(now, options(), neckNow, neck, constants, bonds);
+}
+
+void sinterContacts(const Scene& scene, const contact_law::PairOptions& options, Real neck, Real largestNeck, SharedConstants& constants,
+        SharedBonds& bonds)
+{
+	for (const auto& interaction : *scene.interactions) {
 		if (!interaction->isReal()) continue;
 		auto* phys = dynamic_cast<JKRWadaPhys*>(interaction->phys.get());
 		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
 		if (!phys || !geometry) continue;
-		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*now.bodies)[id]->material.get())->forKernel(); };
+		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*scene.bodies)[id]->material.get())->forKernel(); };
 		const auto first = materialOf(interaction->getId1()), second = materialOf(interaction->getId2());
 		const auto shrunk =
-		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, options(), neck));
-		if (phys->bonded || !phys->touching)
+		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, options, largestNeck));
+		const bool torn = phys->current && phys->overlap < -phys->constants->pullOffOverlap;
+		if (phys->bonded || !phys->touching || torn)
 			phys->constants = shrunk; // of the contact that may come
 		else if (phys->bondToCome)
 			phys->constantsToCome = shrunk; // sintered since the latest step: the bond keeps its neck
 		else {
-			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neckNow));
+			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neck));
 			phys->constantsToCome = shrunk;
 		}
 	}
@@ -343,7 +372,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKR
 		energies.kinetic = r.workBefore;
 		energies.stored = r.stored;
 		energies.dissipated = r.dissipated;
-		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step ago
+		// half of the kick a step ago, and what belongs before this instant; the forces of phys are still those on body 2 a step
+		// ago
 		const Vector3r before =
 		        phys.touching ? (ofPlane ? 0.5 : -0.5) * (phys.normalForce + phys.shearForce) : Vector3r(Vector3r::Zero());
 		const Real work = motion.dt * (before + fromKernel(r.forceBefore)).dot(fromKernel(motion.imageVelocity));
@@ -398,3 +428,24 @@ ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, c
 }
 
 } // namespace yade
+
+// What the compiler's flags make of floating-point arithmetic (tests/equivalence/test_floating_point.py).
+extern "C" {
+
+// a b + c as the functors compute it, or (set = "avx512", "avx2", "portable") as the engine's passes do; not a number where the machine
+// lacks the set.
+double contact_law_sum_of_product(const char* set, double a, double b, double c)
+{
+	if (!*set) return a * b + c;
+	try {
+		return contact_law::instructionSet(set).sumOfProduct(a, b, c);
+	} catch (const std::exception&) {
+		return std::numeric_limits<double>::quiet_NaN();
+	}
+}
+
+// (a + b) - a, which -ffast-math would make b
+double contact_law_reassociated(double a, double b) { return (a + b) - a; }
+
+int contact_law_is_nan(double a) { return a != a; }
+}

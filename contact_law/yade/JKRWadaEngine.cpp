@@ -1,14 +1,10 @@
-#include "../engine/exchange.hpp"
-#include "../engine/stability.hpp"
-#include "ContactsHolder.hpp"
+// The steps of JKRWadaEngine, and its calls between them.
 #include "JKRWadaEngineRun.hpp"
-#include "RunningLoop.hpp"
 #include "SceneShapes.hpp"
 
 namespace yade {
 
 using contact_law::Dynamics;
-using contact_law::GrainMotion;
 
 YADE_PLUGIN((JKRWadaEngine));
 CREATE_LOGGER(JKRWadaEngine);
@@ -16,18 +12,10 @@ CREATE_LOGGER(JKRWadaEngine);
 // What a script has changed since the last step holds from here on, or is refused.
 void JKRWadaEngine::takeChanges(Moment moment)
 {
-	current->settings.requireSame(settings());
-	if (current->grains.hasMore(*scene)) startAgain();
-	const auto set = [this](std::size_t k, const GrainMotion& motion) {
-		if (!finite(motion))
-			refuseInEngine(bodyName(current->grains.idOf(k))
-			        + " was given a position, orientation or velocity that is not a finite number");
-		current->dynamics.set(int(k), motion);
-		current->watch.motionsChanged();
-	};
+	requireSameSettings();
+	if (current->grains.hasMore(*scene)) takeMoreBodies();
 	current->dynamics.setMeanField({ 0, 0, 0 }, SceneCell::convective(*scene)); // O.cell.homoDeform may be another
-	current->grains.eachChange(*scene, orientations, current->dynamics.threadCount(), set);
-	if (current->grains.planes.takeChanges(*scene, current->dynamics)) current->watch.motionsChanged();
+	if (current->grains.takeChanges(*scene, orientations, current->dynamics)) current->watch.forget();
 	if (exportInteractions || moment == Moment::WithinStep) requireContactsKept();
 	takeCleared();
 	takeStep();
@@ -54,7 +42,7 @@ void JKRWadaEngine::takeStep()
 	requireStable(current->dynamics, now);
 	current->dynamics.setStep(now);
 	smallStep = now;
-	current->watch.motionsChanged();
+	current->watch.forget();
 	bringBodies();
 }
 
@@ -67,7 +55,7 @@ void JKRWadaEngine::takeForces()
 	if (now == current->outside) return;
 	current->dynamics.setOutsideForces(now, onset);
 	current->outside = std::move(now);
-	current->watch.motionsChanged();
+	current->watch.forget();
 }
 
 // The beginning of all that this engine does: afterwards there is a run, of this scene, and as scripts want it.
@@ -116,8 +104,7 @@ void JKRWadaEngine::makeStep()
 	requireAlone(*scene);
 	enter(Moment::WithinStep);
 	current->cell.require(*scene, current->dynamics);
-	const std::string tooFast = current->grains.planes.tooFast(smallStep, current->dynamics.state().smallestRadius);
-	if (!tooFast.empty()) refuseInEngine(tooFast);
+	refuseIfAny(current->grains.tooFast(smallStep, current->dynamics.state().smallestRadius));
 	takeForces(); // last: it empties O.forces
 	const std::string wrongCell = current->cell.wrong(*scene, current->dynamics, subSteps);
 	if (!wrongCell.empty()) {
@@ -136,7 +123,7 @@ void JKRWadaEngine::makeStep()
 	        current->watch.wrong(current->dynamics, current->now, made, subSteps, scene->trackEnergy ? &energies : nullptr);
 	if (!wrong.empty()) fail(scene->time + std::min(made + 1, long(subSteps)) * smallStep, wrong);
 	writeBodies();
-	current->grains.planes.push(*scene, current->dynamics);
+	current->grains.pushPlanes(*scene, current->dynamics);
 	if (exportInteractions)
 		writeContacts();
 	else
@@ -178,7 +165,7 @@ void JKRWadaEngine::writeInteractions()
 
 void JKRWadaEngine::writeContacts()
 {
-	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions);
+	current->contacts.write(*scene, current->dynamics);
 	current->forces.write(*scene, current->grains, current->dynamics, current->outside);
 	ContactsHolder(*scene).set(current->name, true);
 }
@@ -189,58 +176,24 @@ void JKRWadaEngine::sinter(Real neckNow)
 	if (!(neckNow > 0 && neckNow <= contact_law::largestNeck))
 		refuseInEngine("sinter(): neck = " + text(neckNow) + ": must be > 0 and up to 0.7");
 	enter(Moment::BetweenSteps);
-	if (!current->grains.planes.empty()) refuseInEngine(bondsOfPlanes);
+	if (current->grains.hasPlanes()) refuseInEngine(bondsOfPlanes);
 	const double unstable = contact_law::unstableStepOfBonds(current->dynamics, neckNow);
 	if (!(smallStep < unstable))
 		refuseInEngine("sinter(): the small step O.dt/subSteps is " + text(smallStep) + " s: must be below " + text(unstable)
 		        + " s for bonds of neck = " + text(neckNow));
+	const Real before = current->dynamics.totalEnergy();
+	exportContacts();
+	neck = std::max(neck, neckNow);
+	SharedConstants constants;
+	SharedBonds bonds;
+	sinterContacts(*scene, { linearDamping, slidingStiffnessFactor }, neckNow, neck, constants, bonds);
+	readAnew();
+	current->dynamics.bookDisconnection(
+	        before - current->dynamics.totalEnergy()); // of the leapfrog's kinetic energy: contacts push no more
 	current->contacts.withdraw(*scene);
-	current->dynamics.sinter(neckNow);
-	neck = current->dynamics.state().neck;
-	current->settings.neck = neck;
-	current->watch.motionsChanged();
 	bringBodies();
 	if (exportInteractions) writeContacts();
 	if (scene->trackEnergy) writeEnergies(current->dynamics.energies());
-}
-
-void JKRWadaEngine::handOver()
-{
-	const auto rest = atRest("handOver()");
-	if (!current) refuseInEngine("handOver() before the first step: there is nothing to hand over");
-	requireOwnScene();
-	if (inStep()) refuseInEngine("handOver() within an O.step: call it between two");
-	enter(Moment::BetweenSteps);
-	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
-	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::AStepBehind); // with the orientations that go with it
-	for (std::size_t k = 0; k < current->now.size(); ++k)
-		current->now[k].orientation = motionOf(current->grains.stateOf(k)).orientation;
-	contact_law::readAhead(current->dynamics, current->now);
-	current->grains.write(current->now, true, current->dynamics.threadCount()); // functors turn the pointers with their bodies
-	current->grains.planes.write(current->dynamics, smallStep);
-	scene->time += smallStep;
-	scene->iter += 1;
-	scene->dt = smallStep;
-	current->forces.withdraw(*scene);
-	current.reset();
-	ContactsHolder(*scene).clear();
-}
-
-// Contacts go to O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
-void JKRWadaEngine::leaveContacts()
-{
-	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
-	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
-	current->contacts.write(*scene, current->dynamics, SceneContacts::Stage::OfPositions, isThere);
-	ContactsHolder(*scene).set(current->name, true);
-}
-
-void JKRWadaEngine::leave()
-{
-	leaveContacts();
-	current->forces.withdraw(*scene);
-	current.reset();
-	ContactsHolder(*scene).clear();
 }
 
 bool JKRWadaEngine::isAmong(const std::vector<shared_ptr<Engine>>& engines) const
@@ -280,30 +233,15 @@ void JKRWadaEngine::giveWay()
 	scene = &now;
 	if (!current) start();
 	if (actsYet())
-		leaveContacts(); // and leaves then; but YADE does not come to this engine where one before it throws
+		exportContacts(); // and leaves then; but YADE does not come to this engine where one before it throws
 	else
 		leave();
-}
-
-// Bodies were added: another run of all bodies, which has the contacts of this one and goes on booking. This one stays where that is refused.
-void JKRWadaEngine::startAgain()
-{
-	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
-	const std::shared_ptr<Run> before = current;
-	leaveContacts();
-	const bool wasBooked = booked; // with that too
-	start(true);
-	before->forces.withdraw(*scene);
-	current->dynamics.continueFrom(contact_law::booked(before->dynamics));
-	current->watch.motionsChanged(); // what was lost before may be below zero: grains torn apart by a script, sinter()
-	booked = wasBooked;
-	current->workOn = before->workOn;
 }
 
 void JKRWadaEngine::writeBodies()
 {
 	current->grains.write(current->now, orientations, current->dynamics.threadCount());
-	current->grains.planes.write(current->dynamics);
+	current->grains.writePlanes(current->dynamics);
 }
 
 // After a change between steps. Velocities that are the same but for rounding too: a checkpoint must find them as the engine has them.
@@ -312,6 +250,29 @@ void JKRWadaEngine::bringBodies()
 	current->dynamics.read(current->now);
 	writeBodies();
 }
+
+// ---- O.energy ----
+
+void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
+{
+	const bool known = booking == Booking::AlreadyInOEnergy;
+	if (!booked) channels.takeOver();
+	booked = true;
+	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics) || current->grains.hasPlanes();
+	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
+	channels.set(*scene, now, known, current->workOn);
+}
+
+// Whether O.energy has the energies of this run still: a script may have cleared it.
+bool JKRWadaEngine::isInOEnergy() const { return booked && EnergyChannels::areIn(*scene); }
+
+// O.energy.clear(): sums count from there on.
+void JKRWadaEngine::takeCleared()
+{
+	if (booked && !isInOEnergy()) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+}
+
+// ---- what others read ----
 
 bool JKRWadaEngine::hasStarted() const
 {

@@ -1,7 +1,5 @@
-// How a run of JKRWadaEngine starts: what is asked for, whether it can be had, and the grains with their contacts.
-#include "../engine/exchange.hpp"
-#include "../engine/stability.hpp"
-#include "ContactsHolder.hpp"
+// How a run of JKRWadaEngine starts: from a scene, from a checkpoint, or from its own contacts in a scene that has changed; and what it
+// leaves behind.
 #include "JKRWadaEngineRun.hpp"
 #include "SceneShapes.hpp"
 #include <algorithm>
@@ -46,9 +44,21 @@ void JKRWadaEngine::requireAlone(const Scene& scene)
 	if (!late.empty()) refuseInEngine(late + " comes after this engine in O.engines, too late for its forces: must come before");
 }
 
-EngineSettings JKRWadaEngine::settings() const
+JKRWadaEngine::Settings JKRWadaEngine::settings() const
 {
-	return { domains, instructions, linearDamping, slidingStiffnessFactor, neck, sliding, rolling, twisting, limit, orientations };
+	return { { "domains", text(domains) }, { "instructions", text(instructions) }, { "linearDamping", text(linearDamping) },
+		{ "slidingStiffnessFactor", text(slidingStiffnessFactor) }, { "neck", text(neck) }, { "sliding", text(sliding) },
+		{ "rolling", text(rolling) }, { "twisting", text(twisting) }, { "limit", text(limit) },
+		{ "orientations", text(orientations) } };
+}
+
+void JKRWadaEngine::requireSameSettings() const
+{
+	const Settings now = settings();
+	for (std::size_t k = 0; k < now.size(); ++k)
+		if (now[k] != current->settings[k])
+			refuseInEngine(now[k].first + " was changed after the start: it must stay " + current->settings[k].second + ", not "
+			        + now[k].second + "; a new JKRWadaEngine takes the contacts over");
 }
 
 void JKRWadaEngine::requireInRange() const
@@ -107,30 +117,30 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 {
 	SceneGrains grains(*scene);
 	if (grains.size() == 0) refuseInEngine("there are no spheres");
-	if (neck != 0 && !grains.planes.empty()) refuseInEngine(bondsOfPlanes);
+	if (neck != 0 && grains.hasPlanes()) refuseInEngine(bondsOfPlanes);
 	const auto materials = grains.materials();
 	const bool continued = !savedState.empty();
 	Dynamics::Options options = optionsFor(materials);
-	options.dt = continued ? smallStep : scene->dt / subSteps;
+	options.dt = continued || again ? smallStep : scene->dt / subSteps;
 	SceneContacts contacts;
-	const contact_law::Inherited inherited = contacts.take(*scene, grains, options.dt, options.mechanisms);
+	const contact_law::Inherited inherited = contacts.take(*scene, grains, options.mechanisms);
 	for (const auto& one : inherited.contacts)
-		if (one.bonded && one.neck > neck)
+		if (one.neck > neck)
 			refuseInEngine("O.interactions has sintered bonds of neck = " + text(one.neck) + ", and neck is " + text(neck)
 			        + ": must be the largest neck they were made with");
 	const ContactsHolder holder(*scene);
 	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
-	const bool inherits = again || (!continued && !inherited.empty()), stepBehind = inherits && inherited.stepBehind;
-	const bool ofContacts = stepBehind || holder.isWritten() || SceneShapes::functorsActed(*scene);
+	const bool inherits = again || (!continued && !(inherited.contacts.empty() && inherited.onPlanes.empty()));
+	const bool ofContacts = contacts.ofFunctors() || holder.isWritten() || SceneShapes::functorsActed(*scene);
 	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, ofContacts);
 	SceneCell cell;
-	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps, stepBehind, options.dt);
+	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps);
 	options.convective = SceneCell::convective(*scene);
-	options.planes = grains.planes.planes();
-	const auto onset = stepBehind ? Dynamics::Onset::AStepAgo : inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now;
+	options.planes = grains.planes();
 	const auto started = [&](auto&&... from) {
-		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(), onset,
-		        Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
+		return std::shared_ptr<Run>(
+		        new Run { grains, contacts, cell, settings(), inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now,
+		                Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
 	};
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
 }
@@ -153,23 +163,67 @@ void JKRWadaEngine::start(bool again)
 	current->now = current->grains.motions();
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
 		current->dynamics.read(current->now);
-		current->grains.setWritten(current->now);
-		current->grains.planes.setWritten(current->dynamics);
-		current->watch.motionsChanged(); // losses so far may be below zero, after sinter()
-		continueBooking();
-	} else
+		current->grains.setWritten(current->now, current->dynamics);
+		if (isInOEnergy())
+			writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy); // it has them from before it was saved
+	} else if (!again)
 		booked = false;
+	if (continued || run->onset == Dynamics::Onset::Before)
+		current->watch.forget(); // losses may be below zero: what a script has changed, sinter()
 	// that of the last step: one that was set since is taken by prepare(), or in the next step
 	SceneCell::applyVelocityGradient(*scene, current->dynamics);
-	forgetSaved();
+	savedState.clear(), savedForces.clear();
 	ContactsHolder(*scene).set(current->name, false);
 }
+
+// ---- a scene that has changed: its contacts are exported, and the scene is read anew ----
+
+void JKRWadaEngine::takeMoreBodies()
+{
+	const SceneGrains all(*scene); // refuses bodies that cannot be moved, while nothing is changed
+	exportContacts();
+	readAnew();
+}
+
+// To O.interactions, where whatever moves the grains from here on finds them, in the state of the bodies as this engine left them.
+void JKRWadaEngine::exportContacts()
+{
+	if (EnergyChannels::areIn(*scene)) writeEnergies(current->dynamics.energies());
+	const auto isThere = [this](int id) { return current->grains.hasBody(*scene, id); };
+	current->contacts.write(*scene, current->dynamics, isThere);
+	ContactsHolder(*scene).set(current->name, true);
+}
+
+// Another run of the scene, which goes on booking where this one ends. This one stays where that is refused.
+void JKRWadaEngine::readAnew()
+{
+	const std::shared_ptr<Run> before = current;
+	start(true);
+	before->forces.withdraw(*scene);
+	current->dynamics.continueFrom(contact_law::booked(before->dynamics));
+	current->workOn = before->workOn;
+	for (contact_law::OutsideForce force : before->outside) {
+		force.grain = current->grains.grainOf(before->grains.idOf(force.grain));
+		current->outside.push_back(force);
+	}
+	current->dynamics.setOutsideForces(current->outside, Dynamics::Onset::Before);
+	current->onset = Dynamics::Onset::Now;
+}
+
+void JKRWadaEngine::leave()
+{
+	exportContacts();
+	current->forces.withdraw(*scene);
+	current.reset();
+	ContactsHolder(*scene).clear();
+}
+
+// ---- whether it can be had ----
 
 void JKRWadaEngine::requireSound(const Run& run)
 {
 	const Dynamics& dynamics = run.dynamics;
-	const std::string tooSmall = SceneCell::tooSmall(dynamics.cell(), dynamics);
-	if (!tooSmall.empty()) refuseInEngine(tooSmall);
+	refuseIfAny(SceneCell::tooSmall(dynamics.cell(), dynamics));
 	requireStable(dynamics, dynamics.state().dt);
 	const std::string deep = StepWatch::tooDeep(dynamics);
 	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
@@ -179,6 +233,44 @@ void JKRWadaEngine::requireStable(const Dynamics& dynamics, Real step)
 {
 	const double unstable = contact_law::unstableStep(dynamics);
 	if (!(step > 0 && step < unstable)) refuseInEngine(tooLong("small step O.dt/subSteps", step, unstable));
+}
+
+// ---- checkpoints ----
+
+void JKRWadaEngine::restoreForces()
+{
+	try {
+		SceneForces::restorePermanent(*Omega::instance().getScene(), savedForces);
+		savedForces.clear();
+	} catch (const std::invalid_argument&) { // damaged: the first step says so
+	}
+}
+
+void JKRWadaEngine::preSave(JKRWadaEngine&)
+{
+	const auto rest = atRest("O.save()");
+	const shared_ptr<Scene> saved = Omega::instance().getScene();
+	if (!current) { // before the first step: what was loaded, if anything, is saved again, but for forces set since
+		if (saved->forces.getPermForceUsed()) savedForces = SceneForces::permanent(*saved);
+		return;
+	}
+	if (current->scene.lock() != saved) return savedState.clear(), savedForces.clear();
+	scene = saved.get();
+	try { // what cannot be taken in is refused by the next step, here or after loading
+		if (current->grains.hasMore(*scene)) takeMoreBodies();
+	} catch (const std::runtime_error&) {
+	}
+	// what is saved is that of the state that is saved: a script may have changed it, or not have asked for energies, since the last
+	// step
+	if (isInOEnergy()) writeEnergies(current->dynamics.energies());
+	savedState = current->dynamics.save();
+	savedForces = SceneForces::permanent(*scene);
+}
+
+void JKRWadaEngine::postSave(JKRWadaEngine&)
+{
+	if (current) savedState.clear();                                                  // a copy of this engine would start from it
+	if (Omega::instance().getScene()->forces.getPermForceUsed()) savedForces.clear(); // O.forces has them
 }
 
 } // namespace yade

@@ -1,13 +1,23 @@
-// One line for what the fused engine cannot do, and numbers in it.
+// One line for what the fused engine cannot do, and numbers in it; and how a refusal reaches Python.
 #pragma once
-#include "../engine/number_text.hpp"
+#include "../engine/shared_state.hpp"
+#include <core/Omega.hpp>
+#include <chrono>
 #include <cstdio>
+#include <future>
 #include <stdexcept>
 #include <string>
+#include <sys/syscall.h>
+#include <thread>
+#include <unistd.h>
 
 namespace yade {
 
 [[noreturn]] inline void refuseInEngine(const std::string& what) { throw std::runtime_error("JKRWadaEngine: " + what); }
+inline void refuseIfAny(const std::string& fault) // empty: there is none
+{
+	if (!fault.empty()) refuseInEngine(fault);
+}
 
 // As in Python: numbers by as many digits as they have, strings in quotes.
 inline std::string text(double number) { return contact_law::textOf(number); }
@@ -31,5 +41,29 @@ inline std::string tooLong(const std::string& step, double seconds, double unsta
 }
 
 inline std::string bodyName(std::size_t id) { return "body " + std::to_string(id); }
+
+// ---- O.run(n) steps in a thread of its own ----
+
+// What would read or write the scene meanwhile is refused to Python's main thread; PyRunners are called by the loop's own thread, between
+// two engines.
+inline void requireLoopAtRest(const std::string& call)
+{
+	if (Omega::instance().isRunning() && syscall(SYS_gettid) == getpid())
+		throw std::runtime_error(call + " while O.run() is under way: call it after O.pause() or O.wait(), or from a PyRunner");
+}
+
+/* Before a step of O.run(n, True) throws: O.wait() raises nothing when the loop has ended before it looks. Python holds its lock until
+ * it waits, so returns when that was free, or after a second: O.reset() holds it until the loop has ended. */
+inline void letPythonWait()
+{
+	if (PyGILState_Check()) return; // O.step(): Python itself makes this step
+	std::promise<void> free;
+	const auto waits = free.get_future();
+	std::thread([free = std::move(free)]() mutable {
+		PyGILState_Release(PyGILState_Ensure());
+		free.set_value();
+	}).detach();
+	waits.wait_for(std::chrono::seconds(1));
+}
 
 } // namespace yade

@@ -1,4 +1,4 @@
-#include "SceneCell.hpp"
+#include "JKRWadaEngineRun.hpp"
 #include "Refusal.hpp"
 
 namespace yade {
@@ -38,22 +38,16 @@ Vec3d SceneCell::convective(const Scene& scene)
 	return scene.isPeriodic && scene.cell->homoDeform == 2 ? diagonal(scene.cell->velGrad) : Vec3d { 0, 0, 0 };
 }
 
-PeriodicCell SceneCell::start(Scene& scene, Moment moment, bool stepBehind, Real dt)
+PeriodicCell SceneCell::start(const Scene& scene, Moment moment)
 {
 	if (!scene.isPeriodic) return {};
-	const bool inStep = moment == Moment::WithinStep;
-	Cell& cell = *scene.cell;
+	const Cell& cell = *scene.cell;
 	requireBox(cell);
-	const Matrix3r before = inStep ? cell.prevHSize : cell.hSize;
-	const Vec3d rate = diagonal(cell.velGrad * before);
-	if (stepBehind) {
-		cell.integrateAndUpdate(dt);
-		if (inStep) cell.prevHSize = before + dt * cell.velGrad * before;
-	}
-	size = diagonal(inStep ? cell.prevHSize : cell.hSize);
+	const Matrix3r& before = moment == Moment::WithinStep ? cell.prevHSize : cell.hSize;
+	size = diagonal(before);
 	for (const Real length : { size.x, size.y, size.z })
 		if (!(length > 0)) refuseInEngine("O.cell.hSize is " + sizeText(size) + " m: must be > 0");
-	return PeriodicCell::box(size, rate);
+	return PeriodicCell::box(size, diagonal(cell.velGrad * before));
 }
 
 void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const

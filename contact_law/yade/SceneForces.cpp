@@ -1,7 +1,6 @@
-#include "SceneForces.hpp"
+#include "JKRWadaEngineRun.hpp"
 #include "../engine/checkpoint_archive.hpp"
 #include "../engine/contacts.hpp"
-#include "KernelVectors.hpp"
 #include "Refusal.hpp"
 #include "SceneGrains.hpp"
 #include <core/GlobalEngine.hpp>

@@ -1,5 +1,5 @@
 #include "SceneGrains.hpp"
-#include "../engine/material_list.hpp"
+#include "../engine/contacts.hpp"
 #include "SceneShapes.hpp"
 #include <algorithm>
 
@@ -16,13 +16,32 @@ namespace {
 	}
 	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
 	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
+
+	GrainMotion motionOf(const State& s)
+	{
+		GrainMotion g {};
+		copy(s.pos, g.position);
+		copy(s.vel, g.velocity);
+		copy(s.angVel, g.angularVelocity);
+		g.blocked = s.blockedDOFs;
+		g.orientation = { s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() };
+		return g;
+	}
+
+	bool sameMotion(const State& s, const GrainMotion& g, bool orientations)
+	{
+		const contact_law::Orientation& q = g.orientation;
+		if (orientations && !(s.ori.w() == q.w && s.ori.x() == q.x && s.ori.y() == q.y && s.ori.z() == q.z)) return false;
+		return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity)
+		        && s.blockedDOFs == g.blocked;
+	}
+
 	shared_ptr<JKRMat> requireOfLaw(const Scene& scene, const shared_ptr<Body>& body, const Body& first)
 	{
 		const std::string who = bodyName(body->getId());
 		const auto material = boost::dynamic_pointer_cast<JKRMat>(body->material);
 		if (!material) refuseInEngine(who + " must be a sphere or a Wall of JKRMat; this engine moves nothing else");
-		const std::string fault = faultOf(*body, scene, InPeriodic::AtRest);
-		if (!fault.empty()) refuseInEngine(fault);
+		refuseIfAny(faultOf(*body, scene, InPeriodic::AtRest));
 		if (!body->isBounded() || body->groupMask == 0)
 			refuseInEngine(who + " must be bounded, with a mask other than 0: all bodies meet all others");
 		if (body->groupMask != first.groupMask)
@@ -31,38 +50,19 @@ namespace {
 		return material;
 	}
 
+	void requireFinite(const Body& wall)
+	{
+		if (!wall.state->pos.allFinite() || !wall.state->vel.allFinite())
+			refuseInEngine(bodyName(wall.getId()) + ", a Wall, has a position or velocity that is not a finite number");
+	}
+
 	bool isotropic(const Vector3r& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
 
-	void write(const GrainMotion& g, State& s, bool orientations)
+	[[noreturn]] void refuseChanged(const std::string& what, Real was, Real is)
 	{
-		s.pos = eigen(g.position);
-		s.vel = eigen(g.velocity);
-		s.angVel = eigen(g.angularVelocity);
-		if (orientations) s.ori = Quaternionr(g.orientation.w, g.orientation.x, g.orientation.y, g.orientation.z);
+		refuseInEngine(
+		        what + " was changed after the start: it must stay " + text(was) + ", not " + text(is) + "; make a new engine");
 	}
-
-	std::string changed(const std::string& what, Real was, Real is)
-	{
-		return what + " was changed after the start: it must stay " + text(was) + ", not " + text(is) + "; make a new engine";
-	}
-}
-
-GrainMotion motionOf(const State& s)
-{
-	GrainMotion g {};
-	copy(s.pos, g.position);
-	copy(s.vel, g.velocity);
-	copy(s.angVel, g.angularVelocity);
-	g.blocked = s.blockedDOFs;
-	g.orientation = { s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() };
-	return g;
-}
-
-bool sameMotion(const State& s, const GrainMotion& g, bool orientations)
-{
-	const contact_law::Orientation& q = g.orientation;
-	if (orientations && !(s.ori.w() == q.w && s.ori.x() == q.x && s.ori.y() == q.y && s.ori.z() == q.z)) return false;
-	return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity) && s.blockedDOFs == g.blocked;
 }
 
 bool finite(const GrainMotion& g)
@@ -70,6 +70,33 @@ bool finite(const GrainMotion& g)
 	const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
 	const contact_law::Orientation& q = g.orientation;
 	return all(g.position) && all(g.velocity) && all(g.angularVelocity) && std::isfinite(q.w + q.x + q.y + q.z);
+}
+
+// ---- at the start ----
+
+SceneGrains::Kept::Kept(const shared_ptr<Body>& b, int kind_)
+        : id(int(b->getId()))
+        , body(b)
+        , state(b->state)
+        , shape(b->shape)
+        , material(b->material.get())
+        , mask(b->groupMask)
+        , flags(b->flags)
+        , kind(kind_)
+{
+}
+
+SceneGrains::Grain::Grain(const shared_ptr<Body>& body, int kind)
+        : Kept(body, kind)
+        , radius(sphere().radius)
+        , mass(state->mass)
+        , inertia(state->inertia[0])
+{
+	const std::string who = bodyName(id);
+	if (!finite(motionOf(*state))) refuseInEngine(who + " has a position, orientation or velocity that is not a finite number");
+	if (!(radius > 0 && mass > 0 && state->inertia.minCoeff() > 0))
+		refuseInEngine(who + ": radius, mass and moments of inertia must be > 0");
+	if (!isotropic(state->inertia)) refuseInEngine(who + ": its three moments of inertia must be the same, those of a sphere");
 }
 
 std::size_t SceneGrains::endOfIds(const Scene& scene)
@@ -94,12 +121,13 @@ SceneGrains::SceneGrains(const Scene& scene)
 		}
 		if (!first) first = body.get();
 		const shared_ptr<JKRMat> material = requireOfLaw(scene, body, *first);
-		if (wallOf(*body)) {
-			planes.add(body, kindOf(material));
+		if (const Wall* wall = wallOf(*body)) {
+			requireFinite(*body);
+			walls.push_back({ { body, kindOf(material) }, wall->axis, body->state->pos, body->state->vel });
 			continue;
 		}
 		grainOfId[id] = int(bodies.size());
-		bodies.push_back(read(body, kindOf(material)));
+		bodies.emplace_back(body, kindOf(material));
 	}
 	written = motions();
 }
@@ -113,30 +141,25 @@ int SceneGrains::kindOf(const shared_ptr<JKRMat>& material)
 	return int(kinds.size() - 1);
 }
 
-SceneGrains::Kept SceneGrains::read(const shared_ptr<Body>& body, int kind) const
-{
-	const std::string who = bodyName(body->getId());
-	const auto sphere = boost::static_pointer_cast<Sphere>(body->shape);
-	const State& state = *body->state;
-	if (!finite(motionOf(state))) refuseInEngine(who + " has a position, orientation or velocity that is not a finite number");
-	if (!(sphere->radius > 0 && state.mass > 0 && state.inertia.minCoeff() > 0))
-		refuseInEngine(who + ": radius, mass and moments of inertia must be > 0");
-	if (!isotropic(state.inertia)) refuseInEngine(who + ": its three moments of inertia must be the same, those of a sphere");
-	return { body, body->state, sphere, body->material.get(), sphere->radius, state.mass, state.inertia[0], body->groupMask,
-		body->flags, kind, int(body->getId()) };
-}
-
 std::vector<GrainInput> SceneGrains::grains() const
 {
 	std::vector<GrainInput> all;
 	all.reserve(size());
-	for (const Kept& kept : bodies) {
+	for (const Grain& grain : bodies) {
 		GrainInput g {};
-		static_cast<GrainMotion&>(g) = motionOf(*kept.state);
-		g.radius = kept.radius, g.mass = kept.mass, g.inertia = kept.inertia;
-		g.kind = kept.kind, g.id = kept.id;
+		static_cast<GrainMotion&>(g) = motionOf(*grain.state);
+		g.radius = grain.radius, g.mass = grain.mass, g.inertia = grain.inertia;
+		g.kind = grain.kind, g.id = grain.id;
 		all.push_back(g);
 	}
+	return all;
+}
+
+std::vector<contact_law::PlaneInput> SceneGrains::planes() const
+{
+	std::vector<contact_law::PlaneInput> all;
+	for (const Plane& plane : walls)
+		all.push_back({ plane.axis, plane.kind, plane.id, toKernel(plane.state->pos), toKernel(plane.state->vel) });
 	return all;
 }
 
@@ -152,17 +175,101 @@ std::vector<GrainMotion> SceneGrains::motions() const
 {
 	std::vector<GrainMotion> all;
 	all.reserve(size());
-	for (const Kept& kept : bodies)
-		all.push_back(motionOf(*kept.state));
+	for (const Grain& grain : bodies)
+		all.push_back(motionOf(*grain.state));
 	return all;
 }
+
+int SceneGrains::planeOf(int id) const
+{
+	for (std::size_t p = 0; p < walls.size(); ++p)
+		if (walls[p].id == id) return int(p);
+	return -1;
+}
+
+// ---- after a step ----
 
 void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int threads)
 {
 #pragma omp parallel for num_threads(threads)
-	for (std::size_t k = 0; k < now.size(); ++k)
-		yade::write(now[k], *bodies[k].state, orientations);
+	for (std::size_t k = 0; k < now.size(); ++k) {
+		State& s = *bodies[k].state;
+		s.pos = eigen(now[k].position);
+		s.vel = eigen(now[k].velocity);
+		s.angVel = eigen(now[k].angularVelocity);
+		const contact_law::Orientation& q = now[k].orientation;
+		if (orientations) s.ori = Quaternionr(q.w, q.x, q.y, q.z);
+	}
 	written.swap(now);
+}
+
+void SceneGrains::takePlanes(const contact_law::Dynamics& dynamics)
+{
+	for (std::size_t p = 0; p < walls.size(); ++p) {
+		walls[p].position = fromKernel(contact_law::planePosition(dynamics, int(p)));
+		walls[p].velocity = fromKernel(dynamics.state().planes[p].velocity);
+	}
+}
+
+void SceneGrains::writePlanes(const contact_law::Dynamics& dynamics)
+{
+	takePlanes(dynamics);
+	for (Plane& plane : walls)
+		plane.state->pos = plane.position;
+}
+
+void SceneGrains::setWritten(const std::vector<GrainMotion>& motions, const contact_law::Dynamics& dynamics)
+{
+	written = motions;
+	takePlanes(dynamics);
+}
+
+void SceneGrains::pushPlanes(Scene& scene, const contact_law::Dynamics& dynamics) const
+{
+	for (std::size_t p = 0; p < walls.size(); ++p)
+		scene.forces.addForce(walls[p].id, fromKernel(contact_law::pushOn(dynamics, int(p))));
+}
+
+std::string SceneGrains::tooFast(Real step, Real smallestRadius) const
+{
+	for (const Plane& plane : walls)
+		if (!(plane.state->vel.norm() * step <= 0.5 * smallestRadius))
+			return bodyName(plane.id) + ", a Wall, moves at " + rounded(plane.state->vel.norm())
+			        + " m/s: must be at most half the smallest radius in a small step";
+	return "";
+}
+
+// ---- what scripts change ----
+
+bool SceneGrains::takeChanges(const Scene& scene, bool orientations, contact_law::Dynamics& dynamics)
+{
+	requireSameMaterials();
+	const int threads = dynamics.threadCount();
+	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
+	const auto untouched = [&](std::size_t k) { return bodies[k].isThere(scene) && bodies[k].isSame() && !moved(k); };
+	bool any = false;
+	if (!(hasAllBodies(scene) && forAll(size(), threads, untouched))) {
+		requireSame(scene);
+		for (std::size_t k = 0; k < size(); ++k) {
+			if (!moved(k)) continue;
+			const GrainMotion motion = motionOf(*bodies[k].state);
+			if (!finite(motion))
+				refuseInEngine(
+				        bodyName(idOf(k)) + " was given a position, orientation or velocity that is not a finite number");
+			dynamics.set(int(k), motion);
+			written[k] = motion;
+			any = true;
+		}
+	}
+	requireKeptPlanes(scene);
+	for (std::size_t p = 0; p < walls.size(); ++p) {
+		Plane& plane = walls[p];
+		if (plane.state->pos == plane.position && plane.state->vel == plane.velocity) continue;
+		plane.position = plane.state->pos, plane.velocity = plane.state->vel;
+		dynamics.setPlane(int(p), toKernel(plane.position), toKernel(plane.velocity));
+		any = true;
+	}
+	return any;
 }
 
 bool SceneGrains::hasMoreIds(const Scene& scene) const
@@ -179,19 +286,39 @@ bool SceneGrains::hasMore(const Scene& scene) const
 	return true;
 }
 
+bool SceneGrains::hasBody(const Scene& scene, int id) const
+{
+	const int grain = grainOf(id);
+	return grain >= 0 ? bodies[grain].isThere(scene) : walls[planeOf(id)].isThere(scene);
+}
+
 void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) const
 {
 	const auto read = [&](std::size_t k) {
-		const Kept& kept = bodies[k];
-		to.id[k] = kept.id;
-		copy(kept.state->pos, to.position + 3 * k);
-		copy(kept.state->vel, to.velocity + 3 * k);
-		copy(kept.state->angVel, to.angularVelocity + 3 * k);
-		to.radius[k] = kept.sphere->radius;
-		return isThere(scene, k) && kept.body->state == kept.state && kept.body->shape == kept.sphere;
+		const Grain& grain = bodies[k];
+		to.id[k] = grain.id;
+		copy(grain.state->pos, to.position + 3 * k);
+		copy(grain.state->vel, to.velocity + 3 * k);
+		copy(grain.state->angVel, to.angularVelocity + 3 * k);
+		to.radius[k] = grain.sphere().radius;
+		return grain.isThere(scene) && grain.body->state == grain.state && grain.body->shape == grain.shape;
 	};
 	if (hasAllBodies(scene) && forAll(size(), threads, read)) return;
 	requireSame(scene);
+}
+
+bool SceneGrains::Kept::isThere(const Scene& scene) const { return std::size_t(id) < scene.bodies->size() && (*scene.bodies)[id] == body; }
+
+bool SceneGrains::Kept::isSame() const
+{
+	return body->state == state && body->shape == shape && body->material.get() == material && body->groupMask == mask
+	        && body->flags == flags;
+}
+
+bool SceneGrains::Grain::isSame() const
+{
+	return Kept::isSame() && state->mass == mass && state->inertia[0] == inertia && isotropic(state->inertia)
+	        && sphere().radius == radius;
 }
 
 void SceneGrains::requireSame(const Scene& scene) const
@@ -204,66 +331,58 @@ void SceneGrains::requireSame(const Scene& scene) const
 
 void SceneGrains::requireKept(const Scene& scene) const
 {
-	for (std::size_t k = 0; k < size(); ++k)
-		if (!isThere(scene, k))
-			refuseInEngine(nameOf(k) + ((*scene.bodies)[idOf(k)] ? " was replaced by another" : " was erased")
+	for (const Grain& grain : bodies)
+		if (!grain.isThere(scene))
+			refuseInEngine(bodyName(grain.id) + ((*scene.bodies)[grain.id] ? " was replaced by another" : " was erased")
 			        + " after the start: bodies must stay; make a new engine");
-	for (std::size_t k = 0; k < size(); ++k)
-		if (!sameBody(k)) refuseChange(k);
-	planes.requireKept(scene);
+	for (const Grain& grain : bodies)
+		if (!grain.isSame()) grain.refuseChange();
+	requireKeptPlanes(scene);
 }
 
-bool SceneGrains::hasBody(const Scene& scene, int id) const
+void SceneGrains::requireKeptPlanes(const Scene& scene) const
 {
-	const int grain = grainOf(id);
-	return grain >= 0 ? isThere(scene, std::size_t(grain)) : planes.isThere(scene, planes.planeOf(id));
+	for (const Plane& plane : walls) {
+		if (!(plane.isThere(scene) && plane.isSame() && static_cast<const Wall&>(*plane.shape).axis == plane.axis))
+			refuseInEngine(bodyName(plane.id)
+			        + ", a Wall, was replaced or changed after the start: it must stay as it was; make a new engine");
+		refuseIfAny(faultOf(*plane.body, scene, InPeriodic::AtRest));
+		requireFinite(*plane.body);
+	}
 }
 
-bool SceneGrains::sameBody(std::size_t k) const
+void SceneGrains::Grain::refuseChange() const
 {
-	const Kept& kept = bodies[k];
-	const Body& body = *kept.body;
-	const State& state = *kept.state;
-	return body.state == kept.state && body.shape == kept.sphere && body.material.get() == kept.material && body.groupMask == kept.mask
-	        && body.flags == kept.flags && state.mass == kept.mass && state.inertia[0] == kept.inertia && isotropic(state.inertia)
-	        && kept.sphere->radius == kept.radius;
-}
-
-void SceneGrains::refuseChange(std::size_t k) const
-{
-	const Kept& kept = bodies[k];
-	const Body& body = *kept.body;
+	const std::string who = bodyName(id), of = " of " + who;
 	const auto replaced = [&](const char* what) {
-		refuseInEngine(nameOf(k) + " was given another " + what + " after the start: it must keep its own; make a new engine");
+		refuseInEngine(who + " was given another " + what + " after the start: it must keep its own; make a new engine");
 	};
-	if (body.state != kept.state) replaced("state");
-	if (body.shape != kept.sphere) replaced("shape");
-	if (body.material.get() != kept.material) replaced("material");
-	const std::string of = " of " + nameOf(k);
-	if (body.groupMask != kept.mask) refuseInEngine(changed("the mask" + of, kept.mask, body.groupMask));
-	if (kept.sphere->radius != kept.radius) refuseInEngine(changed("the radius" + of, kept.radius, kept.sphere->radius));
-	if (kept.state->mass != kept.mass) refuseInEngine(changed("the mass" + of, kept.mass, kept.state->mass));
+	if (body->state != state) replaced("state");
+	if (body->shape != shape) replaced("shape");
+	if (body->material.get() != material) replaced("material");
+	if (body->groupMask != mask) refuseChanged("the mask" + of, mask, body->groupMask);
+	if (sphere().radius != radius) refuseChanged("the radius" + of, radius, sphere().radius);
+	if (state->mass != mass) refuseChanged("the mass" + of, mass, state->mass);
 	for (int i = 0; i < 3; ++i)
-		if (kept.state->inertia[i] != kept.inertia)
-			refuseInEngine(changed("the moment of inertia" + of, kept.inertia, kept.state->inertia[i]));
-	refuseInEngine(nameOf(k) + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
+		if (state->inertia[i] != inertia) refuseChanged("the moment of inertia" + of, inertia, state->inertia[i]);
+	refuseInEngine(who + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
 }
 
 std::string SceneGrains::firstBodyOf(int kind) const
 {
-	const auto first = std::find_if(bodies.begin(), bodies.end(), [kind](const Kept& kept) { return kept.kind == kind; });
+	const auto first = std::find_if(bodies.begin(), bodies.end(), [kind](const Grain& grain) { return grain.kind == kind; });
 	return first == bodies.end() ? "a Wall" : bodyName(first->id);
 }
 
 void SceneGrains::requireSameMaterials() const
 {
 	for (std::size_t k = 0; k < kinds.size(); ++k) {
-		const Kind& kind = kinds[k];
-		const contact_law::Material now = kind.material->forKernel();
+		const contact_law::Material& was = kinds[k].values;
+		const contact_law::Material now = kinds[k].material->forKernel();
 		for (const contact_law::MaterialRow& row : contact_law::materialList)
-			if (now.*row.member != kind.values.*row.member)
-				refuseInEngine(changed(row.name + std::string(" of the material of ") + firstBodyOf(int(k)),
-				        kind.values.*row.member, now.*row.member));
+			if (now.*row.member != was.*row.member)
+				refuseChanged(row.name + std::string(" of the material of ") + firstBodyOf(int(k)), was.*row.member,
+				        now.*row.member);
 	}
 }
 

@@ -1,7 +1,5 @@
 #include "SceneShapes.hpp"
-#include "ContactsHolder.hpp"
-#include "JKRWada.hpp"
-#include "Refusal.hpp"
+#include "SceneContacts.hpp"
 #include <core/Body.hpp>
 #include <pkg/common/Sphere.hpp>
 #include <pkg/common/Wall.hpp>

@@ -1,12 +1,44 @@
-// What contacts can be made: those of spheres with each other and with planes (Wall). Everything else is refused, by functors and fused engine.
+// What contacts can be made: those of spheres with each other and with planes (Wall). Everything else is refused, by functors and fused
+// engine.
 #pragma once
-#include "OncePerStep.hpp"
+#include <core/Scene.hpp>
+#include <atomic>
+#include <mutex>
 #include <string>
 
 namespace yade {
 
 class Body;
 class Wall;
+
+// What is done once in each step of a scene, by whichever of InteractionLoop's threads comes first; the others wait for it.
+class OncePerStep {
+public:
+	template <class Action> void operator()(const Scene& scene, const Action& action)
+	{
+		if (isDone(scene)) return;
+		const std::lock_guard<std::mutex> only(doing);
+		if (isDone(scene)) return;
+		iteration = none; // before the scene: other threads read it after that
+		latest = scene.energy, known = latest.get();
+		action();
+		iteration = scene.iter;
+	}
+	// Whether the latest step of this scene had it done.
+	bool wasDone(const Scene& scene) const { return known == scene.energy.get() && iteration == scene.iter - 1; }
+
+private:
+	static constexpr long none = -2;
+
+	bool isDone(const Scene& scene) const { return known == scene.energy.get() && iteration == scene.iter; }
+
+	// Functors outlive scenes, and another scene may be at the same iteration. Each has an EnergyTracker of its own; while this one is
+	// kept, no other has its address.
+	shared_ptr<EnergyTracker> latest;
+	std::atomic<const EnergyTracker*> known { nullptr };
+	std::atomic<long> iteration { none };
+	std::mutex doing;
+};
 
 // Of a body (of an interaction, by its id), or null.
 const Wall* wallOf(const Body&);
@@ -25,7 +57,8 @@ public:
 	// Whether the law can hold between all bodies of JKRMat; refuses the scene in this step if not. From any thread; looks once a step.
 	bool fit(Scene&);
 	bool planes() const { return anyPlane; }
-	// Whether any functor had contacts in the latest step of this scene: what O.forces has is theirs, though the contacts may have ended.
+	// Whether any functor had contacts in the latest step of this scene: what O.forces has is theirs, though the contacts may have
+	// ended.
 	static bool functorsActed(const Scene& scene) { return anyLook.wasDone(scene); }
 
 private:

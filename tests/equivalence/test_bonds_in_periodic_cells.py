@@ -1,4 +1,5 @@
-"""Sintered bonds in periodic cells: the fused engine against the functors step by step, its own ledger, threads and instruction sets, checkpoints."""
+"""Sintered bonds in periodic cells: the fused engine against the functors step by step, its own ledger, threads and
+instruction sets, checkpoints."""
 
 import pytest
 from scenes import *
@@ -8,7 +9,8 @@ WORK = "boundaryWork"
 
 
 def start(kind="like", rate=0.0, homo=0, step=0.05, seed=1, side=3, speed=12.0, mover="functors"):
-    """A cubic lattice of touching grains that closes on itself through the boundaries, some of them in other periods; each with some velocity and spin."""
+    """A cubic lattice of touching grains that closes on itself through the boundaries, some of them in other
+    periods; each with some velocity and spin."""
     new_scene(step * unit, mover, neck=0.4)
     materials, radii = ([ice(), soft()], [1e-7, 1.1e-7]) if kind == "unlike" else KINDS[kind]
     random = np.random.default_rng(seed)
@@ -24,8 +26,9 @@ def start(kind="like", rate=0.0, homo=0, step=0.05, seed=1, side=3, speed=12.0, 
 
 @pytest.mark.parametrize("kind,rate,homo", [("like", 0, 0), ("unlike", 0, 2), ("like", 2e-3, 0), ("drag", 2e-3, 1)])
 def test_engine_and_functors_agree_step_by_step(kind, rate, homo):
-    """As for ordinary contacts (test_periodic.py): with prepare() the engine takes the velocity gradient at once. Where the grains have a mean field, boundaryWork of
-    the functors does not know of it; in a changing cell YADE counts kinetic energy from velGrad times position."""
+    """As for ordinary contacts (test_periodic.py): with prepare() the engine takes the velocity gradient at once.
+    Where the grains have a mean field, boundaryWork of the functors does not know of it; in a changing cell YADE
+    counts kinetic energy from velGrad times position."""
     side = 4 if kind == "unlike" else 3
     start(kind, rate, homo, side=side)
     functors, of_functors = record(201, WORK), broken()
@@ -44,7 +47,8 @@ def test_engine_and_functors_agree_step_by_step(kind, rate, homo):
 
 @pytest.mark.parametrize("homo", [0, 2])
 def test_ledger_of_bonds_in_a_shrinking_cell_closes_with_second_order(homo):
-    """Root mean square over six scenes of the largest closure error over the first kinetic energy, at steps a factor 4 apart: second order gives 16, first order 4."""
+    """Root mean square over six scenes of the largest closure error over the first kinetic energy, at steps a factor
+    4 apart: second order gives 16, first order 4."""
 
     def closure(step, seed):
         start("like", 1e-3, homo, step, seed, mover="fused")

@@ -17,7 +17,8 @@ def start(kind="like", count=27, speed=20.0, mover="functors"):
 
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(kind):
-    """27 bonded grains break up: bonds of every mode, contacts that form, slips. Rounding grows as trajectories part."""
+    """27 bonded grains break up: bonds of every mode, contacts that form, slips. Rounding grows as trajectories
+    part."""
     start(kind)
     functors, of_functors = record(301), broken()
     start(kind, mover="fused")
@@ -33,8 +34,9 @@ def test_engine_and_functors_agree_step_by_step(kind):
 
 
 def test_a_bonded_pair_is_unstable_right_above_the_limit():
-    """The limit is 2 over the fastest vibration of two bonded grains. At beta = 0.5 that is sliding against turning, w^2 = k_st (2/m + 2 r^2/I) = 7 k_st/m
-    (7 G > 2 E): the spins stay just below the limit, and grow without bound just above it where the law, which refuses that, is told a shorter step."""
+    """The limit is 2 over the fastest vibration of two bonded grains. At beta = 0.5 that is sliding against turning,
+    w^2 = k_st (2/m + 2 r^2/I) = 7 k_st/m (7 G > 2 E): the spins stay just below the limit, and grow without bound
+    just above it where the law, which refuses that, is told a shorter step."""
     b = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=NECK).bondConstants(ice(), 1e-7, ice(), 1e-7)
     m = ice().density * 4 / 3 * np.pi * 1e-21
 

@@ -1,4 +1,5 @@
-"""JKRWadaEngine against the functors (to rounding, step by step), and against itself: threads, instruction sets, checkpoints, sub-steps."""
+"""JKRWadaEngine against the functors (to rounding, step by step), and against itself: threads, instruction sets,
+checkpoints, sub-steps."""
 
 import pytest
 from scenes import *
@@ -9,7 +10,8 @@ pytestmark = pytest.mark.in_yade
 @pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
 def test_engine_and_functors_agree_step_by_step(kind, limit):
-    """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are few it stays near 1e-15 of a radius."""
+    """27 grains fly together: contacts form, slip and break. Rounding grows as trajectories part; while events are
+    few it stays near 1e-15 of a radius."""
     meeting(kind, limit=limit)
     functors = record(401)
     meeting(kind, mover="fused", limit=limit)
@@ -22,7 +24,8 @@ def test_engine_and_functors_agree_step_by_step(kind, limit):
 
 
 def test_grains_far_apart_meet_their_neighbours():
-    """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as they do without them."""
+    """Stragglers 10^5 radii away, many more cells apart than there are grains: those of the crowd find each other as
+    they do without them."""
 
     def end(mover):
         meeting("like", mover=mover)

@@ -1,5 +1,5 @@
-"""Grains that have flown apart are put into a new order, among other domains: nothing changes but the order in which forces are added.
-Results do not depend on the number of threads, however many domains there are."""
+"""Grains that have flown apart are put into a new order, among other domains: nothing changes but the order in which
+forces are added. Results do not depend on the number of threads, however many domains there are."""
 
 import pytest
 from scenes import *
@@ -13,7 +13,8 @@ def materials_and_radii(kind):
 
 
 def pairs_flying_apart(kind, neck):
-    """Pairs about to touch, or bonded, which vibrate, roll, slide and twist; one grain of each third is held, of each fifth pushed."""
+    """Pairs about to touch, or bonded, which vibrate, roll, slide and twist; one grain of each third is held, of
+    each fifth pushed."""
     random = np.random.default_rng(5)
     new_scene(0.1 * unit, neck=neck)
     gap = -1e-10 if neck else 1e-10
@@ -44,7 +45,7 @@ def test_a_new_order_changes_nothing_but_rounding(kind, neck):
     fused_engine(domains=8, threads=2, neck=neck)
     O.run(4100, True)
     of_engine, statistics = energies(), O.engines[0].statistics()
-    O.engines[0].handOver()
+    O.step()
     assert statistics["orders"] >= 1 and (statistics["bonds"] > 10) == (neck > 0)
     assert neck > 0 or of_engine["slidingDissipation"] > 0
     assert np.abs(functors - positions()).max() < 1e-9 * 1e-7
@@ -67,8 +68,8 @@ def dimers_flying_apart():
 
 
 def test_contacts_form_after_a_new_order():
-    """Dimers that meet only after the grains have been put into a new order: as many contacts as with the functors. Which rows
-    touched in the old order says nothing of the grains in those rows now."""
+    """Dimers that meet only after the grains have been put into a new order: as many contacts as with the functors.
+    Which rows touched in the old order says nothing of the grains in those rows now."""
     dimers_flying_apart()
     fused_engine(domains=2, threads=1)
     O.run(2900, True)

@@ -1,5 +1,5 @@
-"""A run of JKRWadaEngine is one, whatever carries it out: the same bits on any number of threads, every time and from a checkpoint on, the same to
-rounding with any instruction set and any domains."""
+"""A run of JKRWadaEngine is one, whatever carries it out: the same bits on any number of threads, every time and
+from a checkpoint on, the same to rounding with any instruction set and any domains."""
 
 from functools import partial
 
@@ -18,7 +18,8 @@ pytestmark = pytest.mark.in_yade
 
 
 def engine(start, sub_steps=10, **law):
-    """How a scene begins: a function of the engine's other options. In cells with prepare(): the engine takes the velocity gradient at once."""
+    """How a scene begins: a function of the engine's other options. In cells with prepare(): the engine takes the
+    velocity gradient at once."""
 
     def begin(**options):
         start()
@@ -61,25 +62,48 @@ met = lambda c: c["events"] > 1000
 contacts = lambda kind, limit: engine(partial(meeting, kind, 400), limit=limit)
 bonded = lambda kind: engine(partial(bonds.start, kind, 200, 12.0), neck=bonds.NECK)
 cell = lambda kind, homo: engine(partial(periodic.start, kind, 1e-3, homo, 343))
-# How it begins, O.steps until the checkpoint and from there on, its file, what must have happened (counts and energies), threads.
+# How it begins, O.steps until the checkpoint and from there on, its file, what must have happened (counts and
+# energies), threads.
 RUNS = {
     "like": (contacts("like", "held"), 60, 60, ".yade.bz2", met, 2),
     "unlike": (contacts("unlike", "held"), 60, 60, ".xml.gz", met, 2),
     "drag": (contacts("drag", "held"), 60, 60, ".yade.gz", met, 2),
     "unlike, cut": (contacts("unlike", "cut"), 60, 60, ".yade.gz", met, 2),
     "drag, cut": (contacts("drag", "cut"), 60, 60, ".yade", met, 2),
-    **{f"{kind}, bonds": (bonded(kind), 6, 40, ".xml.gz", lambda c: sum(broken()) > 50 and c["bonds"] > 20, 2) for kind in ("like", "unlike", "drag")},
-    "bonds in a cell": (engine(partial(bonds_in_cells.start, "like", 1e-3, 2, side=4), 5, neck=0.4), 15, 15, ".yade.gz", lambda c: sum(broken()) > 10, 2),
+    **{
+        f"{kind}, bonds": (bonded(kind), 6, 40, ".xml.gz", lambda c: sum(broken()) > 50 and c["bonds"] > 20, 2)
+        for kind in ("like", "unlike", "drag")
+    },
+    "bonds in a cell": (
+        engine(partial(bonds_in_cells.start, "like", 1e-3, 2, side=4), 5, neck=0.4),
+        15,
+        15,
+        ".yade.gz",
+        lambda c: sum(broken()) > 10,
+        2,
+    ),
     "unlike, a cell": (cell("unlike", 2), 25, 25, ".yade.gz", lambda c: met(c) and c["searches"] > 1, 2),
     "drag, a cell": (cell("drag", 0), 25, 25, ".xml.bz2", lambda c: met(c) and c["searches"] > 1, 2),
     "planes": (engine(partial(planes.start, count=343)), 30, 60, ".yade.gz", lambda c: c["planeContacts"] > 20, 2),
     "like, sintered": (sintered("like", 125, 20.0), 0, 10, ".yade.gz", lambda c: sum(broken()) > 20, 2),
     "unlike, sintered": (sintered("unlike", 216, 12.0), 0, 10, ".yade.gz", lambda c: sum(broken()) > 20, 2),
-    **{f"{kind}, in a new order": (engine(partial(spread, kind), 50, domains=8), 30, 90, ".yade.gz", lambda c: met(c) and c["orders"] >= 1, 2, 3, 8) for kind in ("like", "unlike", "drag")},
+    **{
+        f"{kind}, in a new order": (
+            engine(partial(spread, kind), 50, domains=8),
+            30,
+            90,
+            ".yade.gz",
+            lambda c: met(c) and c["orders"] >= 1,
+            2,
+            3,
+            8,
+        )
+        for kind in ("like", "unlike", "drag")
+    },
     "blocked": (held, 40, 60, ".yade.bz2", lambda c: c["constraintWork"] != 0, 2),
     "pushed": (partial(pushed, 0), 20, 20, ".xml", lambda c: c["externalWork"] != 0, 2),
     "pushed, drag": (partial(pushed, 1e-12), 20, 20, ".xml", lambda c: c["externalWork"] != 0, 2),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", RUNS)

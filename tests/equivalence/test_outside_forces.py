@@ -1,4 +1,5 @@
-"""Forces of scripts and other engines (O.forces) in JKRWadaEngine: as NewtonIntegrator takes them, and booked as externalWork."""
+"""Forces of scripts and other engines (O.forces) in JKRWadaEngine: as NewtonIntegrator takes them, and booked as
+externalWork."""
 
 import pytest
 from scenes import *
@@ -50,23 +51,6 @@ def test_engine_and_functors_agree():
 
     functors, engine, without = end(False), end(True), end(True, pushed=False)
     assert np.abs(functors - engine).max() < 1e-9 * 1e-7 and np.abs(engine - without).max() > 1e-3 * 1e-7
-
-
-def test_to_the_engine_and_back_in_the_middle_of_a_run():
-    def end(*parts):
-        new_scene(0.1 * unit)
-        converging(27, 1, [ice()], [1e-7])
-        push()
-        for engine, steps in parts:
-            if engine:
-                fused_engine()
-            O.run(steps, True)
-            if engine:
-                O.engines[0].handOver()
-                O.engines = functor_engines()
-        return positions()
-
-    assert np.abs(end((0, 350)) - end((0, 150), (1, 149), (0, 50))).max() < 1e-8 * 1e-7
 
 
 def test_free_grains_follow_the_closed_form():
@@ -141,15 +125,13 @@ def permanent_forces_are_there():
     return all(list(O.forces.permF(k)) == list(force) for k, (force, _) in pushes().items())
 
 
-@pytest.mark.parametrize("loaded", [False, True])
-def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
-    """YADE does not save O.forces: the engine does, of a scene that was never stepped, and of one that was loaded and not stepped since."""
+def test_permanent_forces_that_are_saved_before_the_first_step_hold():
+    """YADE does not save O.forces: the engine does, also of a scene that was loaded and not stepped since."""
 
     def end(saved):
         five_grains()
-        if loaded:
-            O.run(3, True)
-            saved_and_loaded("stepped.xml")
+        O.run(3, True)
+        saved_and_loaded("stepped.xml")
         push()
         if saved:
             saved_and_loaded("pushed.xml")
@@ -158,18 +140,6 @@ def test_permanent_forces_that_are_saved_before_the_first_step_hold(loaded):
 
     straight = end(False)
     assert end(True) == straight and O.energy["externalWork"] != 0
-
-
-@pytest.mark.parametrize("stepped", [False, True])
-def test_two_engines_one_of_them_dead_restore_the_same_permanent_forces(stepped):
-    five_grains()
-    O.engines = [JKRWadaEngine(dead=True, subSteps=10), *O.engines]
-    push()
-    if stepped:
-        O.step()
-    saved_and_loaded("pushed.xml")
-    assert permanent_forces_are_there()
-    O.step()
 
 
 @pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
@@ -212,17 +182,6 @@ def test_a_force_holds_for_one_step():
     assert O.bodies[0].state.vel[0] == 0
 
 
-def test_a_force_resetter_leaves_the_energies():
-    def end(*before):
-        new_scene(0.1 * unit)
-        converging(27, 1, [ice()], [1e-7])
-        O.engines = [*before, JKRWadaEngine(subSteps=10)]
-        O.run(30, True)
-        return energies()
-
-    assert end(ForceResetter()) == end() and O.energy["kinetic"] > 0 > O.energy["normal"]
-
-
 BEFORE = {
     "nothing": lambda: [],
     "ForceResetter": lambda: [ForceResetter(), ForceEngine(ids=[1], force=(weight(), 0, 0))],
@@ -233,7 +192,8 @@ BEFORE = {
 @pytest.mark.parametrize("export", [False, True])
 @pytest.mark.parametrize("before", BEFORE)
 def test_a_refused_step_adds_no_force(before, export):
-    """What engines before this one add counts once; a script's force holds in the step that is made, where none stand before it."""
+    """What engines before this one add counts once; a script's force holds in the step that is made, where none
+    stand before it."""
 
     def end(*refused):
         new_scene(0.1 * unit)

@@ -1,4 +1,5 @@
-"""JKRWadaEngine in periodic cells against the functors, step by step, and against itself: threads, instruction sets, sub-steps."""
+"""JKRWadaEngine in periodic cells against the functors, step by step, and against itself: threads, instruction sets,
+sub-steps."""
 
 import pytest
 from scenes import *
@@ -8,7 +9,8 @@ WORK = "boundaryWork"
 
 
 def start(kind, rate, homo, count=27, **options):
-    """Grains on a loose lattice that fills the cell, shrinking by `rate` a time unit, and each with some velocity and spin; some lie in other periods."""
+    """Grains on a loose lattice that fills the cell, shrinking by `rate` a time unit, and each with some velocity
+    and spin; some lie in other periods."""
     new_scene(0.1 * unit, **options)
     materials, radii = KINDS[kind]
     random = np.random.default_rng(1)
@@ -39,13 +41,14 @@ SHRINKING = [("like", 0, "held"), ("drag", 1, "held"), ("unlike", 1, "held"), ("
 
 @pytest.mark.parametrize("kind,rate,homo,limit", AT_REST + [(kind, 2e-3, *how) for kind, *how in SHRINKING])
 def test_engine_and_functors_agree_step_by_step(kind, rate, homo, limit):
-    """Grains of which some lie in other periods than their neighbours, in a cell at rest, in a shrinking one through which they fly (homoDeform 0), and in one whose mean field moves them.
+    """Grains of which some lie in other periods than their neighbours, in a cell at rest, in a shrinking one through
+    which they fly (homoDeform 0), and in one whose mean field moves them.
 
-    With prepare() the engine takes the velocity gradient at once, so that its cell is an update ahead of the functors' O.cell at the same grains' positions: the
-    functors' forces at these positions see the same size. In the first step with a mean field NewtonIntegrator leaves its convective term (homoDeform 2) out; the
-    velocities that the functors are given have what the engine's have of it. Not compared: boundaryWork of the functors, which does not know of mean fields, and
-    YADE's kinetic energy, in which velocities are counted from velGrad times position.
-    """
+    With prepare() the engine takes the velocity gradient at once, so that its cell is an update ahead of the
+    functors' O.cell at the same grains' positions: the functors' forces at these positions see the same size. In the
+    first step with a mean field NewtonIntegrator leaves its convective term (homoDeform 2) out; the velocities that
+    the functors are given have what the engine's have of it. Not compared: boundaryWork of the functors, which does
+    not know of mean fields, and YADE's kinetic energy, in which velocities are counted from velGrad times position."""
     start(kind, rate, homo, limit=limit)
     if homo == 2 and rate:
         gradient = np.diag(np.array(O.cell.nextVelGrad).reshape(3, 3))
@@ -83,7 +86,8 @@ def test_exported_interactions_are_those_of_the_nearest_images():
 
 @pytest.mark.parametrize("homo", [0, 1, 2])
 def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
-    """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that was set for when it would hold without the call."""
+    """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that
+    was set for when it would hold without the call."""
 
     def end(look=None):
         start("like", 1e-3, homo, mover="fused")

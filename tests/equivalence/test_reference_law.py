@@ -1,9 +1,9 @@
 """Functors and fused engine against tests/reference_law.py, the law once more in plain Python written from MODEL.md.
 
-Positions and every energy channel, step by step, while rounding has not grown yet: measured, 3e-14 of a radius and 4e-14 of
-the energy at most. Everything is held to 1e-12. The one number that the reference takes as the plugin has it is the number of
-terms in missed_at_pull_off(), whose remainder (1e-8) would show as 4e-11 of a radius after a breaking.
-"""
+Positions and every energy channel, step by step, while rounding has not grown yet: measured, 3e-14 of a radius and
+4e-14 of the energy at most. Everything is held to 1e-12. The one number that the reference takes as the plugin has
+it is the number of terms in missed_at_pull_off(), whose remainder (1e-8) would show as 4e-11 of a radius after a
+breaking."""
 
 import pytest
 import reference_law
@@ -27,7 +27,8 @@ def given():
 
 
 def tracks(start, steps, step=0.1, damping=0, neck=0, limit="held", sliding_factor=1):
-    """What the reference is given, positions and energies of functors and engine after each of some steps, and the bonds that broke."""
+    """What the reference is given, positions and energies of functors and engine after each of some steps, and the
+    bonds that broke."""
     law = dict(damping=damping, neck=neck, limit=limit, sliding_factor=sliding_factor)
     new_scene(step * unit, **law)
     start()
@@ -53,7 +54,8 @@ def reference(given, steps, half_step):
 
 
 def compared(found, steps):
-    """Largest differences of functors and engine from the reference (position [radii], energy [scale] by channel), and the last energies by name."""
+    """Largest differences of functors and engine from the reference (position [radii], energy [scale] by channel),
+    and the last energies by name."""
     differences = {}
     for way, half_step in (("functors", True), ("engine", False)):
         x, e = found[way][0], np.array([[one[name] for name in ENERGIES] for one in found[way][1]])

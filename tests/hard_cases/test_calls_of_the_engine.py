@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 import time
 
 import pytest
@@ -10,10 +9,10 @@ from changes import *
 
 pytestmark = pytest.mark.in_yade
 DAMAGED_NUMBERS = int(os.environ.get("DAMAGED_NUMBERS", 20))  # of a checkpoint, each in three ways
-CALLS = ["e.writeInteractions()", "e.handOver()", "e.prepare()", "contact_law.snapshot()"]
+CALLS = ["e.writeInteractions()", "e.prepare()", "contact_law.snapshot()"]
 
 
-ELSEWHERE = ["O.reset()", "O.switchScene()", "O.reset(); chain()", "O.switchScene(); chain()"]
+ELSEWHERE = ["O.reset()", "O.switchScene(); chain()"]
 CHANGED = {"O.bodies.erase(1)": ["body 1 was erased after the start"]}
 CHANGED |= {f"{away}; O.engines = [e]": ["another scene", "make a new one"] for away in ELSEWHERE}
 
@@ -29,21 +28,9 @@ def test_calls_after_a_body_was_erased_and_in_another_scene_are_refused(change):
     require_refused({call: CHANGED[change] for call in calls}, attempt)
 
 
-def test_an_engine_that_was_handed_over_starts_anew_in_another_scene():
-    """At the iteration that its latest step had there, between two steps here."""
-    chain()
-    O.step()
-    e = engine()
-    e.handOver()
-    chain()
-    O.engines = [e]
-    e.prepare()
-    assert contact_law.snapshot()["time"] == 0
-    e.handOver()
-
-
 def test_interactions_that_a_script_erased_are_written_again():
-    """writeInteractions() writes all contacts, whatever was written and erased before; without it a step refuses once what was erased."""
+    """writeInteractions() writes all contacts, whatever was written and erased before; without it a step refuses
+    once what was erased."""
     chain()
     steps(20)
     for erase in ("O.interactions.erase(0, 1)", "O.interactions.clear()", "O.interactions.eraseNonReal()"):
@@ -55,19 +42,6 @@ def test_interactions_that_a_script_erased_are_written_again():
         assert ("cannot be erased there" in said(O.step)) == ("NonReal" not in erase), erase
         O.step()
         assert len(O.interactions) == 0, erase
-
-
-def test_a_refusal_is_raised_where_python_waits_for_the_run_late():
-    """As on a busy machine in O.run(n, True): O.wait() of YADE raises nothing when the loop has ended before it looks."""
-    chain(threads=0)
-    interval = sys.getswitchinterval()
-    sys.setswitchinterval(60)  # Python keeps its lock, as between the two halves of that call
-    O.run(2)
-    end = time.monotonic() + 0.3
-    while time.monotonic() < end:
-        pass
-    assert "threads = 0: must be >= 1" in said(O.wait)
-    sys.setswitchinterval(interval)
 
 
 def test_two_scenes_with_an_engine_each():
@@ -102,8 +76,7 @@ def test_calls_while_the_loop_runs_are_refused():
         message = said(lambda: run(text, e=e))
         time.sleep(0.02)
         O.pause()
-        if "handOver" not in text:
-            at_rest[text] = said(lambda: run(text, e=e))
+        at_rest[text] = said(lambda: run(text, e=e))
         O.wait()
         O.step()
         if message:
@@ -137,45 +110,9 @@ def test_a_snapshot_has_what_a_script_has_changed():
     assert "body 2 was given another state after the start" in said(contact_law.snapshot)
 
 
-@pytest.mark.parametrize("dead", [0, 1])
-def test_a_snapshot_does_not_mind_a_dead_engine_beside_the_other(dead):
-    chain()
-    O.engines = [JKRWadaEngine(dead=k == dead) for k in range(2)]
-    steps(2)
-    assert len(contact_law.snapshot()["contact_pairs"]) == 3
-    O.engines[1 - dead].dead = True  # it has them still, loaded too
-    assert len(contact_law.snapshot()["contact_pairs"]) == 3
-    there = positions()
-    saved_and_loaded()
-    assert (contact_law.snapshot()["position"] == there).all()
-
-
-def test_time_may_be_reset_after_one_step():
-    chain()
-    O.step()
-    O.resetTime()
-    assert contact_law.snapshot()["time"] == 0
-    engine().handOver()
-
-
-def test_a_pyrunner_may_call_the_engine_while_the_loop_runs():
-    chain()
-    found = []
-
-    def look():
-        engine().writeInteractions()
-        pairs = contact_law.snapshot()["contact_pairs"]
-        found.append((O.interactions.countReal(), len(pairs), engine().statistics()["contacts"]))
-        O.save("saved.yade")
-
-    sys.modules["__main__"].look = look
-    O.engines += [PyRunner(command="look()", iterPeriod=5, initRun=False)]
-    O.run(20, True)
-    assert len(found) >= 3 and set(found) == {(3, 3, 3)}
-
-
 def damageable(name):
-    """(numbers of an attribute of the engine in a saved scene, a function that loads the scene with others in their place)."""
+    """(numbers of an attribute of the engine in a saved scene, a function that loads the scene with others in their
+    place)."""
     O.save("saved.xml")
     with open("saved.xml") as file:
         text = file.read()
@@ -196,7 +133,8 @@ def damageable(name):
 
 @pytest.mark.parametrize("name, first", [("savedState", 2), ("savedForces", 0)])
 def test_a_damaged_checkpoint_is_refused(name, first):
-    """Cut off, too long, or with another number somewhere, indices too: of the engine's state, and of permanent forces."""
+    """Cut off, too long, or with another number somewhere, indices too: of the engine's state, and of permanent
+    forces."""
     chain()
     for k in range(4):
         O.forces.setPermF(k, Vector3(1e-9, -2e-9, 3e-9 * k))

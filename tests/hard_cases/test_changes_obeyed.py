@@ -18,7 +18,8 @@ def close_to(energies, unit):
 
 @pytest.mark.parametrize("orientations", [False, True])
 def test_what_a_script_sets_after_loading_holds(orientations):
-    """Velocities, positions, blocked degrees of freedom and orientations: as if they had been set in the run that was never saved."""
+    """Velocities, positions, blocked degrees of freedom and orientations: as if they had been set in the run that
+    was never saved."""
 
     def change():
         O.bodies[1].state.vel += Vector3(3, -1, 2)
@@ -42,21 +43,18 @@ def test_what_a_script_sets_after_loading_holds(orientations):
     assert all_states() == straight[0] and energies() == pytest.approx(straight[1], rel=1e-12)
 
 
-@pytest.mark.parametrize("change", [False, True])
-@pytest.mark.parametrize("times, name", [(1, "saved.xml.bz2"), (2, "saved.yade.gz")])
-def test_what_is_saved_before_the_next_step_is_not_lost(change, times, name):
-    """What a script has set since the last step; and a checkpoint that is saved again before its first step, and goes on."""
+def test_what_is_saved_before_the_next_step_is_not_lost():
+    """What a script has set since the last step; and a checkpoint that is saved again before its first step, and
+    goes on."""
     chain(subSteps=5)
     steps(10)
-    if change:
-        O.bodies[1].state.vel = Vector3(3, -1, 2)
-        O.forces.setPermF(1, Vector3(0, 1e-9, 0))
+    O.bodies[1].state.vel = Vector3(3, -1, 2)
+    O.forces.setPermF(1, Vector3(0, 1e-9, 0))
     O.save("straight.yade")
     steps(10)
     straight = positions()
     O.load("straight.yade")
-    for _ in range(times):
-        saved_and_loaded(name)
+    saved_and_loaded("saved.yade.gz")
     O.save("again.yade")
     steps(10)
     assert (positions() == straight).all()
@@ -80,54 +78,11 @@ def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
     assert contacts == same_contacts > 3 and np.abs(x - y).max() < 1e-12 * 1e-7
 
 
-@pytest.mark.parametrize("saved", [False, True])
-@pytest.mark.parametrize("refused", ["too deep", "too small for the step"])
-def test_a_grain_that_is_refused_and_erased_leaves_no_trace(refused, saved):
-    """Nor in a checkpoint with it, which can be written."""
-
-    def end(appended):
-        flying_together()
-        O.dt *= 4
-        O.run(40, True)
-        if appended:
-            deep = refused == "too deep"
-            place = O.bodies[0].state.pos + Vector3(0, 1e-8, 0) if deep else Vector3(2e-6, 0, 0)
-            grain(place, 1e-7 if deep else 1e-8, O.bodies[0].material)
-            for _ in range(2):
-                if saved:
-                    saved_and_loaded()
-                else:
-                    assert ("overlap" if deep else "small step") in said(O.step)
-            O.bodies.erase(27)
-        O.run(20, True)
-        counts = engine().statistics()
-        motion = [(*b.state.pos, *b.state.vel, *b.state.angVel) for b in O.bodies]
-        return motion, [counts[name] for name in ("contacts", "contactUpdates", "events", "formed")], energies()
-
-    (motion, counts, booked), (x, n, e) = end(False), end(True)
-    assert motion == x and counts == n and e == close_to(booked, "kinetic") and booked["slidingDissipation"] > 0
-
-
-def test_an_engine_that_was_saved_and_handed_over_starts_from_the_functors():
-    def end(save):
-        chain()
-        e = engine()
-        steps(20)
-        if save:
-            O.save("saved.yade")
-        steps(20)
-        e.handOver()
-        for O.engines in (functor_engines(), [e]):
-            steps(20)
-        return positions()
-
-    assert (end(False) == end(True)).all()
-
-
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-8.0, 1.0, 0), (0, 30.0, 0)])
 def test_a_touching_body_may_be_moved(mover, by):
-    """Its contacts break when they are torn apart, with either way of moving, and the grains stay where one can find them."""
+    """Its contacts break when they are torn apart, with either way of moving, and the grains stay where one can find
+    them."""
     chain(mover=mover)
     steps(200)
     before = energies()
@@ -194,7 +149,8 @@ def test_ids_of_bodies_that_were_erased_are_left_out():
 
 
 def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it():
-    """Torn away in the middle of a run with drag: the loss that is booked is the functors', to the first order of the one small step by which forces lag."""
+    """Torn away in a run with drag: the loss that is booked is the functors', to the first order of the step by
+    which forces lag."""
 
     def torn(mover, step):
         chain(mover=mover)
@@ -216,7 +172,8 @@ def test_a_moved_body_leaves_its_neighbours_as_the_functors_have_it():
 
 
 def test_a_body_wrapped_into_the_cell_keeps_its_contacts():
-    """A script brings a touching grain back into the periodic cell: its contacts are with the nearest images, as before."""
+    """A script brings a touching grain back into the periodic cell: its contacts are with the nearest images, as
+    before."""
     shift = 1.5e-6 * np.array([1, 0, -2])
 
     def end(wrapped):
@@ -236,7 +193,8 @@ def test_a_body_wrapped_into_the_cell_keeps_its_contacts():
 
 
 def test_energies_may_be_asked_for_late_or_with_a_pause():
-    """O.trackEnergy switched on, off and on again, after loading and handOver(): what O.energy then has is what it has when it was on all the time."""
+    """O.trackEnergy switched on, off and on again, after loading: what O.energy then has is what it has when it was
+    on all the time."""
 
     def end(tracked, load=False):
         flying_together()
@@ -245,7 +203,8 @@ def test_energies_may_be_asked_for_late_or_with_a_pause():
             O.step()
             if load and k == 35:
                 saved_and_loaded()
-        engine().handOver()
+        O.trackEnergy = True
+        engine().prepare()
         return energies()
 
     always = end(lambda k: True)
@@ -255,30 +214,7 @@ def test_energies_may_be_asked_for_late_or_with_a_pause():
             assert end(tracked, load) == close_to(always, "connection")
 
 
-def test_energies_are_those_of_velocities_that_were_set_and_saved():
-    """A call that takes the change over stands between it and O.save, or none: O.energy after loading has what it has without."""
-
-    def end(written, saved):
-        new_scene(0.1 * unit)
-        cluster(4, 1, [ice()], [1e-7], 1.0, 0)
-        engine_of_sub_steps(5)
-        O.run(5, True)
-        for b in O.bodies:
-            b.state.vel = 3 * b.state.vel
-        if written:
-            engine().writeInteractions()
-        if saved:
-            saved_and_loaded()
-        O.step()
-        return energies()
-
-    straight = end(False, False)
-    for how in ((False, True), (True, False), (True, True)):
-        assert end(*how) == close_to(straight, "kinetic")
-
-
-@pytest.mark.parametrize("saved", [False, True])
-def test_energies_that_were_cleared_count_anew(saved):
+def test_energies_that_were_cleared_count_anew():
     """From O.energy.clear() on, as the functors'; what was lost before stays away."""
 
     def end(cleared):
@@ -287,7 +223,6 @@ def test_energies_that_were_cleared_count_anew(saved):
         before = energies()
         if cleared:
             O.energy.clear()
-        if saved:
             saved_and_loaded()
         O.run(20, True)
         return before, energies()
@@ -299,56 +234,9 @@ def test_energies_that_were_cleared_count_anew(saved):
     assert anew == close_to(lost, "kinetic")
 
 
-@pytest.mark.parametrize("tracked", ["functors", "both"])
-def test_energies_after_the_functors_and_a_checkpoint(tracked):
-    """The functors' losses stay booked, and the engine's come on top, whether the engine was saved in between, or asked for energies at the end only."""
-
-    def end(load):
-        new_scene(0.1 * unit)
-        converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-        steps(150)
-        engine_of_sub_steps(5)
-        O.trackEnergy = tracked == "both"
-        for k in range(20):
-            O.step()
-            if load and k == 10:
-                saved_and_loaded()
-        O.trackEnergy = True
-        O.step()
-        return energies()
-
-    straight = end(False)
-    assert straight["slidingDissipation"] > 0 and straight["connection"] > 0
-    assert end(True) == close_to(straight, "connection")
-
-
-@pytest.mark.parametrize("call", ["utils.unbalancedForce()", "engine().writeInteractions()", "said(O.step)"])
-def test_what_was_taken_in_may_be_undone(call):
-    """A change that a call between two steps has seen, or one beside another that is refused: undone, the run goes on as without it."""
-
-    def end(change):
-        chain()
-        steps(20)
-        states = [O.bodies[k].state for k in (1, 2)]
-        kept = [Vector3(state.vel) for state in states]
-        if change:
-            states[0].vel, states[0].blockedDOFs = 2 * kept[0], "xyzXYZ"
-            if "step" in call:
-                states[1].vel = Vector3(float("nan"), 0, 0)
-            run(call)
-            states[0].blockedDOFs = ""
-            for state, vel in zip(states, kept):
-                state.vel = vel
-        steps(20)
-        return positions()
-
-    assert np.abs(end(True) - end(False)).max() < 1e-12 * 1e-7
-
-
-@pytest.mark.parametrize("mover", ["fused", "functors"])
-def test_a_wall_may_be_moved_from_a_grain_at_rest(mover):
+def test_a_wall_may_be_moved_from_a_grain_at_rest():
     """What a script's move does to the energy is no error of the step."""
-    new_scene(0.1 * unit, mover)
+    new_scene(0.1 * unit, "fused")
     wall = O.bodies.append(utils.wall(0, axis=2, material=ice()))
     c = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice(), 1e-7, ice(), float("inf"))
     grain((0, 0, 1e-7 - c["equilibriumOverlap"]), 1e-7, O.bodies[wall].material)

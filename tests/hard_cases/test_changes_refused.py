@@ -5,27 +5,23 @@ from changes import *
 
 pytestmark = pytest.mark.in_yade
 CHANGES = {text.split(" | ")[0].format(i=2): words for text, words in UNDONE.items()} | {
-    "O.bodies[2].state.inertia *= 2": ["the moment of inertia of body 2 was changed", "must stay"],
     "O.bodies[2].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["the moment of inertia of body 2 was changed"],
     "O.bodies[2].material.density = 2000": ["density of the material of body 0 was changed"],
-    "O.bodies[2].material.viscoelasticTime = 1e-12": ["viscoelasticTime of the material of body 0 was changed", "must stay 0"],
-    "engine().sliding = False": ["sliding was changed", "must stay True, not False"],
     "engine().limit = 'cut'": ["limit was changed", "must stay 'held', not 'cut'"],
     "engine().domains = 3": ["domains was changed", "must stay 0, not 3"],
-    "engine().instructions = 'portable'": ["instructions was changed", "must stay ''"],
     "engine().orientations = True": ["orientations was changed"],
-    "O.dt = 0": ["the small step O.dt/subSteps is 0 s: must be above 0"],
     "O.dt = float('nan')": ["the small step O.dt/subSteps is nan s: must be above 0"],
-    "O.bodies.erase(3)": ["body 3 was erased after the start"],
-    "O.bodies.append(utils.wall(0, axis=2, material=utils.defaultMaterial()))": ["body 4 must be a sphere or a Wall of JKRMat"],
-    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice())); O.bodies[2].state.mass *= 2": ["the mass of body 2 was changed"],
+    "O.bodies.append(utils.facet([(0, 0, 0), (1e-7, 0, 0), (0, 1e-7, 0)], material=O.bodies[0].material))": [
+        "body 4 is a Facet"
+    ],
+    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice())); O.bodies[2].state.mass *= 2": [
+        "the mass of body 2"
+    ],
     "O.bodies.clear()": ["there are 0 bodies, must be the 4 of the latest step"],
     "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4"],
-    "O.engines = [engine(), engine()]": ["O.engines has 2 JKRWadaEngines: there must be one"],
-    "engine().exportInteractions = True; O.step(); O.interactions.erase(0, 1)": ["O.interactions has 2 contacts, must be the 3"],
-    "engine().exportInteractions = True; O.step(); O.interactions.clear()": ["O.interactions has 0 contacts, must be the 3"],
+    "engine().exportInteractions = True; O.step(); O.interactions.erase(0, 1)": ["has 2 contacts, must be the 3"],
     "engine().linearDamping = float('nan')": ["linearDamping = nan: must be >= 0"],
-}  # fmt: skip
+}
 
 
 def test_changes_in_the_middle_of_a_run_are_refused():
@@ -46,21 +42,16 @@ def test_changes_in_the_middle_of_a_run_are_refused():
 CHANGES_AFTER_LOADING = {
     "O.bodies[2].shape.radius = 2e-7": ["the radius of body 2 is another than in the checkpoint: it must be 1e-07"],
     "O.bodies[2].state.mass *= 2": ["the mass of body 2 is another than in the checkpoint"],
-    "O.bodies[2].state.inertia *= 2": ["the moment of inertia of body 2 is another than in the checkpoint"],
     "O.bodies[2].material = soft()": ["the number of materials is another than in the checkpoint: it must be 1"],
     "O.bodies[2].material.young = 1e9": ["young of material 0 is another than in the checkpoint: it must be 7e+09"],
     "engine().linearDamping = 0.5": ["linearDamping is another than in the checkpoint: it must be 0"],
-    "engine().slidingStiffnessFactor = 2": ["slidingStiffnessFactor is another than in the checkpoint: it must be 1"],
     "engine().neck = 0.5": ["neck is another than in the checkpoint: it must be 0"],
-    "engine().sliding = False": ["sliding is another than in the checkpoint: it must be 1"],
     "engine().limit = 'cut'": ["limit (0: held, 1: cut) is another than in the checkpoint: it must be 0"],
-    "engine().domains = 3": ["domains is another than in the checkpoint: it must be 2"],
     "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
     "O.bodies.erase(1)": ["the number of bodies is another than in the checkpoint: it must be 4"],
-    "O.bodies.erase(1); grain((9e-7, 0, 0), 1e-7, O.bodies[0].material)": ["the id of body 2 is another than in the checkpoint: it must be 1"],
-    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=O.bodies[0].material))": ["the number of bodies is another than in the checkpoint: it must be 4"],
+    "O.bodies.erase(1); grain((9e-7, 0, 0), 1e-7, O.bodies[0].material)": ["the id of body 2 is another"],
     "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
-}  # fmt: skip
+}
 
 
 def test_changes_after_loading_are_refused():
@@ -77,34 +68,29 @@ def test_changes_after_loading_are_refused():
 
 OUT_OF_RANGE = {
     "linearDamping=-1.0": ["linearDamping = -1: must be >= 0"],
-    "linearDamping=float('nan')": ["linearDamping = nan: must be >= 0"],
     "linearDamping=float('inf')": ["linearDamping = inf: must be >= 0"],
     "slidingStiffnessFactor=0.0": ["slidingStiffnessFactor = 0: must be > 0"],
-    "slidingStiffnessFactor=float('nan')": ["slidingStiffnessFactor = nan: must be > 0"],
-    **{f"{name}={value}": [f"{name} = {value}: must be >= 1"] for name in ("subSteps", "threads") for value in (0, -3)},
+    "subSteps=0": ["subSteps = 0: must be >= 1"],
+    "threads=-3": ["threads = -3: must be >= 1"],
     "subSteps=2**31 - 1": ["subSteps = 2147483647: must be <= 1000000"],
     "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
     "neck=0.8": ["neck = 0.8"],
-    "neck=-1": ["neck = -1: must be 0 (no bonds), or up to 0.7 for sintered bonds"],
     "limit='Cut'": ["limit = 'Cut': must be 'held' or 'cut'"],
     "instructions='sse9'": ["instructions = 'sse9': must be here"],
-}  # fmt: skip
-
-
-def test_attributes_out_of_range_are_refused():
-    require_refused(OUT_OF_RANGE, lambda text: run(f"chain(); fused_engine({text}); O.step()"))
-
-
+}
 SCENES = {
     "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
     "O.bodies[1].bounded = False": ["body 1 must be bounded"],
-    "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity that is not"],
-    "O.bodies[1].state.vel = Vector3(float('nan'), 0, 0)": ["body 1 has a position, orientation or velocity that is not a finite"],
-    "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["body 1: its three moments of inertia must be the same"],
-}  # fmt: skip
+    "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity"],
+    "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": [
+        "body 1: its three moments of inertia must be the same"
+    ],
+}
 
 
-def test_scenes_that_the_engine_cannot_move_are_refused_at_the_start():
+def test_what_the_engine_cannot_start_from_is_refused():
+    require_refused(OUT_OF_RANGE, lambda text: run(f"chain(); fused_engine({text}); O.step()"))
+
     def attempt(text):
         chain()
         run(text, I=O.bodies[1].state.inertia)

@@ -59,8 +59,8 @@ def test_grains_without_rolling_resistance_turn_on_each_other_without_end(mover,
 @pytest.mark.parametrize("change", ["functors", "functors to engine", "engine", "engine to functors"])
 @pytest.mark.parametrize("left_out", [("sliding", "rolling"), ("sliding",), ("twisting",)], ids="+".join)
 def test_springs_that_come_in_later_have_no_strain(left_out, change, wall):
-    """Grains that have turned on each other, or on a wall, far beyond the springs' limits: no spring pulls when it comes in, nothing was stored, and the others hold
-    what they held (to the second order of their angles)."""
+    """Grains that have turned on each other, or on a wall, far beyond the springs' limits: no spring pulls when it
+    comes in, nothing was stored, and the others hold what they held (to the second order of their angles)."""
     without = dict.fromkeys(left_out, False)
     new_scene(0.1 * unit, "functors" if change.startswith("functors") else "fused", **without)
     second = O.bodies.append(utils.wall(0, axis=0, material=ice())) if wall else grain((0, 0, 0), 1e-7, ice())

@@ -1,4 +1,5 @@
-"""Whatever the neighbour lists do, grains that overlap are in contact: looked for among all pairs, every few small steps."""
+"""Whatever the neighbour lists do, grains that overlap are in contact: looked for among all pairs, every few small
+steps."""
 
 import pytest
 from scenes import *
@@ -64,7 +65,8 @@ def test_a_shrinking_cell_whose_rate_jumps():
 
 
 def test_a_cell_that_shrinks_stop_and_go():
-    """Five small steps, then 25 at rest: of those since the latest check of the lists, at most eight, most had another rate than the last."""
+    """Five small steps, then 25 at rest: of those since the latest check of the lists, at most eight, most had
+    another rate than the last."""
     new_scene(0.1 * unit)
     periodic_cell(1e-6, 1e-6, 1e-6, homo=0)
     grain((0, 0, 0), 1e-7, ice())
@@ -78,8 +80,8 @@ def test_a_cell_that_shrinks_stop_and_go():
 
 
 def test_steps_that_are_counted_anew():
-    """The lists' counter of small steps ends 1,000 after the start for the first time; had it no end, pairs that touch would count as due, and form
-    another contact, 10,000 later."""
+    """The lists' counter of small steps ends 1,000 after the start for the first time; had it no end, pairs that
+    touch would count as due, and form another contact, 10,000 later."""
     new_scene(0.1 * unit)
     for x, speed in ((0, 0), (1.99e-7, 0), (5e-7, -0.4)):
         grain((x, 0, 0), 1e-7, ice(), (speed, 0, 0))

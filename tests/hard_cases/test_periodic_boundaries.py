@@ -1,4 +1,5 @@
-"""What periodic cells do to careless codes: grains in contact that cross boundaries, cells too small or too skew, scripts that change the cell."""
+"""What periodic cells do to careless codes: grains in contact that cross boundaries, cells too small or too skew,
+scripts that change the cell."""
 
 import pytest
 from changes import require_refused, run
@@ -19,7 +20,8 @@ def shrinking(rate):
 
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 def test_nothing_happens_to_grains_in_contact_that_cross_a_boundary(mover):
-    """Six touching grains that fly, spin and slip across all three boundaries, through more than a whole cell: the same as in open space, but for rounding."""
+    """Six touching grains that fly, spin and slip across all three boundaries, through more than a whole cell: the
+    same as in open space, but for rounding."""
 
     def fly(periodic):
         box((1.5e-6, 1.5e-6, 1.5e-6), mover)
@@ -44,7 +46,8 @@ def test_nothing_happens_to_grains_in_contact_that_cross_a_boundary(mover):
 
 
 def test_neighbours_are_found_in_cells_of_few_grains():
-    """The smallest cell that may be, one grid cell an axis at times: as many contacts as all pairs' nearest images have."""
+    """The smallest cell that may be, one grid cell an axis at times: as many contacts as all pairs' nearest images
+    have."""
     size = np.array([5.7e-7, 6.5e-7, 9e-7])
     box(size)
     distance = lambda x, y: np.linalg.norm(x - y - size * np.round((x - y) / size), axis=-1)
@@ -72,14 +75,22 @@ def test_a_shrinking_cell_stops_the_run_before_it_is_too_small():
 
 
 CELLS = {
-    "O.cell.hSize = Matrix3(1e-6, 1e-8, 0, 0, 1e-6, 0, 0, 0, 1e-6)": ["hSize has the element (0, 1) = 1e-08", "diagonal"],
+    "O.cell.hSize = Matrix3(1e-6, 1e-8, 0, 0, 1e-6, 0, 0, 0, 1e-6)": [
+        "hSize has the element (0, 1) = 1e-08",
+        "diagonal",
+    ],
     "O.cell.velGrad = Matrix3(0, 0, 1, 0, 0, 0, 0, 0, 0)": ["velGrad has the element (0, 2) = 1", "diagonal"],
     "O.cell.velGrad = Matrix3(float('nan'), 0, 0, 0, 0, 0, 0, 0, 0)": ["velGrad has the element (0, 0) = nan"],
     "O.cell.setBox(1e-6, 5e-7, 1e-6)": ["cell of (1e-06, 5e-07, 1e-06) m is too small", "at least 5.6"],
-    "O.run(3, True); O.cell.setBox(2e-6, 2e-6, 2e-6)": ["another size (2e-06, 2e-06, 2e-06) m", "after the start with (1e-06"],
+    "O.run(3, True); O.cell.setBox(2e-6, 2e-6, 2e-6)": [
+        "another size (2e-06, 2e-06, 2e-06) m",
+        "after the start with (1e-06",
+    ],
     "O.run(3, True); O.periodic = False": ["O.periodic was changed after the start: it must stay True"],
-    "O.run(3, True); O.cell.velGrad = shrinking(0.8); O.step()": ["by more than half the smallest radius in a small step"],
-}  # fmt: skip
+    "O.run(3, True); O.cell.velGrad = shrinking(0.8); O.step()": [
+        "by more than half the smallest radius in a small step"
+    ],
+}
 
 
 def test_cells_that_the_engine_cannot_follow_are_refused_in_one_line():

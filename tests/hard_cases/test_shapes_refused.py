@@ -44,10 +44,6 @@ def said(add, changes):
     new_scene(1e-3 * unit, neck=neck)
     globals()[add](ice(), **{} if neck else changes)
     grain((0, 0, 0.999 * R), R, ice())
-    return said_soon()
-
-
-def said_soon():
     try:
         O.step()
         end = time.time() + 10
@@ -65,23 +61,6 @@ def test_refused_in_one_line_by_functors_and_engine(add, changes, line):
     fused_engine(neck=changes.get("neck", 0))
     told = refusal()
     assert line in told and "\n" not in told
-
-
-@pytest.mark.in_yade
-@pytest.mark.parametrize("away", ["O.reset()", "O.switchScene()"])
-def test_functors_that_are_used_again_look_at_the_new_scene(away):
-    """It is at the iteration of the scene before."""
-    new_scene(1e-3 * unit)
-    loop = O.engines[2]
-    for x in (0, 1.99 * R):
-        grain((x, 0, 0), R, ice())
-    O.step()
-    exec(away)
-    O.dt = 1e-3 * unit
-    O.engines = engines_around(loop)
-    facet(ice())
-    grain((0, 0, 0.999 * R), R, ice())
-    assert "body 0 is a Facet" in said_soon()
 
 
 def said_to_threads():

@@ -70,8 +70,7 @@ BY_STRETCHES = [("through", kind) for kind in ("free", "drag", "bonds", "blocked
 
 @pytest.mark.parametrize("go, kind", [*BY_STRETCHES, ("unlike", "free"), ("unlike", "drag")])
 def test_trajectories_have_second_order(go, kind):
-    """Of the largest distance from a run of short equal steps, at steps a factor 2 apart: 4; 2 if the kick between two steps were that of
-    either, or if drag, which is extrapolated from the velocities of two steps, did not know how long each was."""
+    """Of the largest distance from a run of short equal steps, at steps a factor 2 apart: 4."""
 
     def end(base, by, *factors):
         by(vibrating(kind, base), 24.0 if go == "through" else 21.0, *factors)
@@ -84,9 +83,10 @@ def test_trajectories_have_second_order(go, kind):
 
 
 def test_contacts_form_and_break_in_steps_between_others():
-    """Two grains bounce off each other; every contact forms and breaks between two steps of unlike length. Energy over the one at the start, root mean square
-    over 16 phases of the first touch within a step, at steps a factor 4 apart: while they touch (16), at the end (8: the last rise of the force, a square
-    root, is summed for equal steps), and the largest change by that of the step alone (16)."""
+    """Two grains bounce off each other; every contact forms and breaks between two steps of unlike length. Energy
+    over the one at the start, root mean square over 16 phases of the first touch within a step, at steps a factor 4
+    apart: while they touch (16), at the end (8: the last rise of the force, a square root, is summed for equal
+    steps), and the largest change by that of the step alone (16)."""
 
     def errors(base, phase):
         new_scene(base * unit)
@@ -138,7 +138,8 @@ def test_no_contact_is_missed_when_steps_become_longer(number):
 
 @pytest.mark.parametrize("kind", ["free", "bonds", "blocked", "force", "cell"])
 def test_the_ledger_closes_in_every_kind_of_scene(kind):
-    """With the work of boundaries, of outside forces and of what holds grains: the largest deviation, at steps a factor 4 apart, 16."""
+    """With the work of boundaries, of outside forces and of what holds grains: the largest deviation, at steps a
+    factor 4 apart, 16."""
 
     def closure(base):
         base = vibrating(kind, base)
@@ -151,7 +152,8 @@ def test_the_ledger_closes_in_every_kind_of_scene(kind):
 
 @pytest.mark.parametrize("drag", [0.0, 2e-12])
 def test_the_ledger_closes_with_second_order(drag):
-    """While contacts form, slip and break: root mean square over six scenes, at steps a factor 4 apart (16; order 3/2 gives 8, first order 4)."""
+    """While contacts form, slip and break: root mean square over six scenes, at steps a factor 4 apart (16; order
+    3/2 gives 8, first order 4)."""
 
     def closure(base, seed):
         new_scene(base * unit)
@@ -171,24 +173,9 @@ def test_the_ledger_closes_with_second_order(drag):
     assert coarse < 2e-3 and coarse / fine > (6 if drag else 9)
 
 
-def test_results_are_the_same_on_any_threads_and_after_a_checkpoint():
-    def end(threads, save):
-        new_scene(0.1 * unit)
-        converging(64, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-        fused_engine(threads=threads)
-        for k in range(10):
-            if save and k in (4, 7):
-                saved_and_loaded()
-                engine().threads = threads
-            through(0.1, 20.0)
-        return positions()
-
-    straight = end(1, False)
-    assert (straight == end(2, False)).all() and (straight == end(1, True)).all()
-
-
 def test_a_step_changed_and_changed_back_leaves_everything():
-    """Positions and velocities to rounding, whatever is called in between, and the same small step with other subSteps too."""
+    """Positions and velocities to rounding, whatever is called in between, and the same small step with other
+    subSteps too."""
 
     def end(change):
         chain(subSteps=4)
@@ -209,23 +196,3 @@ def test_a_step_changed_and_changed_back_leaves_everything():
 
     assert far_apart(end(there_and_back), end(lambda: None)) < 1e-9
     assert far_apart(end(two_by_two), end(O.step)) < 1e-9
-
-
-def test_the_functors_take_over_after_another_step():
-    """handOver() leaves O.dt at the step that was last set, and the functors go on with it."""
-
-    def end(handed):
-        chain()
-        steps(20)
-        O.dt *= 0.5
-        if not handed:
-            steps(41)
-            return positions(), O.dt
-        O.step()
-        engine().handOver()
-        O.engines = functor_engines()
-        steps(39)
-        return positions(), O.dt
-
-    (x, straight), (y, handed) = end(False), end(True)
-    assert far_apart(x, y) < 1e-9 and straight == handed

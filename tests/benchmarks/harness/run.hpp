@@ -1,7 +1,5 @@
 // A scene of a file in the engine, as JKRWadaEngine has it in YADE.
 #pragma once
-#include "../../../contact_law/engine/diagnosis.hpp"
-#include "../../../contact_law/engine/stability.hpp"
 #include "scene_file.hpp"
 #include <memory>
 
@@ -49,12 +47,9 @@ inline Dynamics::Grains grainsOf(const Scene& scene)
 inline Inherited contactsOf(const Scene& scene)
 {
 	Inherited inherited;
-	for (const ContactRecord& c : scene.contacts) {
-		contact_law::ContactBefore before;
-		before.touching = true, before.overlap = c.overlap, before.drag = c.drag;
-		inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist }, before,
-		        c.bonded != 0, c.rest, c.bonded ? scene.head.neck : 0 });
-	}
+	for (const ContactRecord& c : scene.contacts)
+		inherited.contacts.push_back({ int(c.first), int(c.second), { { vector(c.pointer1), vector(c.pointer2) }, c.twist }, c.drag,
+		        c.overlap, c.bonded ? scene.head.neck : 0, c.rest });
 	return inherited;
 }
 
@@ -156,14 +151,7 @@ public:
 		return hash;
 	}
 
-	// All channels [J]: constant.
-	double totalEnergy()
-	{
-		double sum = 0;
-		for (const double energy : contact_law::byChannel(engine->energies()))
-			sum += energy;
-		return sum;
-	}
+	double totalEnergy() { return engine->totalEnergy(); }
 
 	double kineticEnergy() { return engine->energies().kinetic; } // [J]
 	contact_law::Dynamics& dynamics() { return *engine; }

@@ -1,6 +1,6 @@
 // Scenes in files: grains and contacts at one moment, and what a run needs besides. tests/benchmarks/scene_file.py lists the same fields.
 #pragma once
-#include "../../../contact_law/engine/exchange.hpp"
+#include "../../../contact_law/engine/contacts.hpp"
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
