@@ -150,36 +150,35 @@ def _threads_of_yade(cells, parameters):
 
 
 def refusal(row):
-    """Why a row must not be run, in one line; None where it may, if it has not ended."""
-    if row.error:
-        return row.error
-    lock = under_way(row.out)
-    if lock and not lock.can_be_followed:
-        return f"{row.out}: is run {lock}; must have ended there, or {row.out}/lock be removed"
-    found = _ended(row, run_of(row.out)) if _has_ended(row) else None
+    """Why a row must not be run, in one line; None where it may, or has ended, or runs."""
+    found = _settled(row)
     return found.note if found and found.kind == FAILED else None
 
 
 def state(row, log):
-    """What has become of a row; log: the file that its output goes to. Why it must not be run is FAILED, too."""
-    refused = refusal(row)
-    if refused:
-        return State(FAILED, note=refused)
-    folder, lock = row.out, under_way(row.out)  # the lock first: a run that ends now has its mark before it gives it up
-    run = run_of(folder)
-    if _has_ended(row):
-        return _ended(row, run)
-    if lock:
-        return running_state(folder, run, lock)
-    note, progress = _stopped(folder, run)
-    problem = failure(log, folder)
+    """What has become of a row; log: the file that its output goes to. One that must not be run is FAILED, too."""
+    found = _settled(row)
+    if found:
+        return found
+    run = run_of(row.out)
+    note, progress = _stopped(row.out, run)
+    problem = failure(log, row.out)
     if problem:
         return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
     return State(WAITING, progress, run.get("wallTime"), note=note)
 
 
-def _has_ended(row):
-    return os.path.exists(os.path.join(row.out, ENDED_FILE)) and not _goes_on(row)
+def _settled(row):
+    """State of a row that is wrong, has ended, or is under way; None of one that may be run."""
+    if row.error:
+        return State(FAILED, note=row.error)
+    folder, lock = row.out, under_way(row.out)  # the lock first: a run that ends now has its mark before it gives it up
+    run = run_of(folder)
+    if os.path.exists(os.path.join(folder, ENDED_FILE)) and not _goes_on(row, run):
+        return _ended(row, run)
+    if lock and not lock.can_be_followed:
+        return State(FAILED, note=f"{folder}: is run {lock}; must have ended there, or {folder}/lock be removed")
+    return running_state(folder, run, lock) if lock else None
 
 
 def _ended(row, run):
@@ -201,7 +200,7 @@ def _difference(row, run):
         try:
             wanted = evaluate(text)
         except NotANumber:
-            wanted = text
+            wanted = text.strip("'\"")
         if name not in ("description", *_OF_NO_CONSEQUENCE) and not same(held, wanted):
             return f"{name} = {held}, not {text}"
     return None
@@ -210,11 +209,10 @@ def _difference(row, run):
 _OF_NO_CONSEQUENCE = [name for name, column in RunParameters.columns().items() if not column.of_consequence]
 
 
-def _goes_on(row):
-    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, which is longer in
-    the row."""
-    run = run_of(row.out) if row.kind and checkpoint.exists(row.out) else None
-    if not run:
+def _goes_on(row, run):
+    """Whether a run that ended undecided, with a checkpoint, is the row's but for its duration, which is longer in the
+    row."""
+    if not (row.kind and run and checkpoint.exists(row.out)):
         return False
     found = [difference(row.kind, row.parameters, run, but) for but in ((), ("duration",))]
     return found[0] is not None and found[1] is None
