@@ -286,7 +286,7 @@ def rows(runs):
         found = twisting(ice(runs, 1024, 1e-6, criticalRolling=rolling * 1e-10))
         yield K13(f"{what} = {rolling} Å, 1,024 grains", found, None, printed, "3.5")
     found = estimate(mean("D_0.003"), ice(runs, 16_384, 3e-7))
-    yield Row("fractal dimension at φ = 0.003", found, (1.5, 2.5), "N ∝ r²: 1.5 to 2.5", "3.6", runs=1)
+    yield Row("fractal dimension at φ = 0.003", found, (1.85, 2.15), "N ∝ r²: 1.85 to 2.15", "3.6", runs=1)
     yield from _new(bins, silicate, few)
 
 
