@@ -2,11 +2,10 @@
 
     python3 yade_scripts/studies/sintered.py grow SIZE [-j JOBS]    the compacted aggregates of a table that are missing
 
-Tables. full: the velocities and beta of Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom;
-the paper has five runs a point. desk: an evening on two cores: the points that decide the paper's statements, ten seeds
-each. beyond: what the desk's runs leave open: compacted aggregates in space, springs held at their limits, xi_crit = 30
-Angstrom. decide: twenty seeds more of what ten leave undecided and thirty may decide. Rows stand in the order of their
-worth: one seed of every point after another.
+Tables. full: Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper has five runs a
+point. desk: an evening on two cores: the points that decide the paper's statements. beyond: what the desk's runs leave
+open. decide: twenty seeds more of what ten leave undecided. Rows stand in the order of their worth: one seed of every
+point after another.
 
 Compacted aggregates. Section 4 makes them by "collision simulations" at V_g, section 5.2 speaks of "successive
 collisions", without their start. Here two BCCA clusters of START grains, the same one in two random orientations,
@@ -35,18 +34,15 @@ from yade_scripts.parameters.errors import tell
 from yade_scripts.run.parameters import CORES
 
 GRAINS = 1024
-SEEDS = range(1, 11)
 SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
 GROWN = "runs/sintered-grown"  # compacted aggregates, each in two orientations: NAME.npz and NAME-b.npz
 START, STUCK, ATTEMPTS = 512, 0.9, 5
 RADIUS = 1e-7  # m
-# A collision that compacts lasts until the two have moved so many times their diameters at V_g, at most DURATION.
-CROSSINGS = 3.0
+CROSSINGS = 3.0  # a collision that compacts lasts until the two have moved so many diameters at V_g, at most DURATION
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
-# Above 10 m/s half of it: in 21 runs that went on (the sliding spring of Wada et al. 2007, two seeds) no largest piece
-# changed after 9.2 us, and no part of the energy by more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by
-# up to 0.05 K(0).
+# Above 10 m/s half of it: in 21 runs that went on no largest piece changed after 9.2 us, and no part of the energy by
+# more than 0.025 K(0) after 12.2 us; at 10 m/s parts still change by up to 0.05 K(0).
 FAST, DURATION_FAST = 10.0, "12.2e-6"  # m/s, s
 STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates
 STEP_COMPACTED = {0.2: 0.09}  # t0, by beta: packings of files count as close-packed, where they are stable to 0.0996
@@ -89,13 +85,12 @@ class Point:
 
     def name(self, seed):
         """Name of a row and its run folder: b0.7-v10-vg3-s1 and what else is special."""
-        parts = [f"b{self.neck:g}", "v3.2" if self.velocity == ROOT else f"v{self.velocity}"]
-        parts += [f"vg{self.growth:g}"] if self.growth else []
-        parts += [f"x{self.rolling:g}"] if self.rolling != 2 else []
-        parts += [] if self.planar else ["space"]
-        parts += [f"T{1e12 * float(self.drag):g}ps"] if float(self.drag) else []
-        parts += [self.limit] if self.limit != "cut" else []
-        return "-".join([*parts, f"s{seed}"])
+        name = f"b{self.neck:g}-v{'3.2' if self.velocity == ROOT else self.velocity}"
+        name += f"-vg{self.growth:g}" if self.growth else ""
+        name += f"-x{self.rolling:g}" if self.rolling != 2 else ""
+        name += "" if self.planar else "-space"
+        name += f"-T{1e12 * float(self.drag):g}ps" if float(self.drag) else ""
+        return name + (f"-{self.limit}" if self.limit != "cut" else "") + f"-s{seed}"
 
     def grown(self, seed):
         """The compacted aggregate that collides."""
@@ -103,15 +98,13 @@ class Point:
 
     def row(self, seed, folder):
         """A table's row."""
-        name = self.name(seed)
-        grown = self.grown(seed)
+        bcca = {"packing": "bcca", "grains": GRAINS, "seed": seed, "file": "*", "projectileFile": "*"}
+        files = {"file": self.grown(seed).file(0), "projectileFile": self.grown(seed).file(1)}
+        compacted = {"packing": "file", "grains": "*", "seed": "*", **files}
+        slow = self.velocity == ROOT or float(self.velocity) <= FAST
         return {
-            "description": name,
-            "packing": "file" if self.growth else "bcca",
-            "grains": "*" if self.growth else GRAINS,
-            "seed": "*" if self.growth else seed,
-            "file": grown.file(0) if self.growth else "*",
-            "projectileFile": grown.file(1) if self.growth else "*",
+            "description": self.name(seed),
+            **(compacted if self.growth else bcca),
             "planar": self.planar,
             "neck": f"{self.neck:g}",
             "velocity": self.velocity,
@@ -119,12 +112,12 @@ class Point:
             "viscoelasticTime": self.drag,
             "limit": self.limit,
             "slidingStiffnessFactor": SLIDING,
-            "duration": DURATION if self.velocity == ROOT or float(self.velocity) <= FAST else DURATION_FAST,
+            "duration": DURATION if slow else DURATION_FAST,
             "endWhenApart": 1,
             "states": STATES,
             "stepFraction": STEP_COMPACTED.get(self.neck, STEP) if self.growth else STEP,
             "threads": 1,
-            "out": f"{folder}/{name}",
+            "out": f"{folder}/{self.name(seed)}",
         }
 
 
@@ -197,19 +190,18 @@ POINTS = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND, "decide":
 
 def seeds(size):
     """Seeds of every point of a table."""
-    return range(11, 31) if size == "decide" else SEEDS
+    return range(11, 31) if size == "decide" else range(1, 11)
 
 
 def grown(size):
     """Compacted aggregates that the rows of a table need, each once."""
-    wanted = (point.grown(seed) for seed in seeds(size) for point in POINTS[size] if point.growth)
-    return list(dict.fromkeys(wanted))
+    return unique(point.grown(seed) for seed in seeds(size) for point in POINTS[size] if point.growth)
 
 
 def rows(size):
     """Rows of a table: every point with the first seed, then with the next one. In desk space and drag come last."""
     folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
-    groups = (DESK, [point for point in POINTS[size] if point not in DESK]) if size == "desk" else (POINTS[size],)
+    groups = [DESK, [point for point in SPACE if point not in DESK]] if size == "desk" else [POINTS[size]]
     return [point.row(seed, folder) for group in groups for seed in seeds(size) for point in group]
 
 
@@ -265,28 +257,15 @@ def grow(grown):
 
 
 def _collide(half, grown, files, run):
-    arguments = dict(
-        packing="file",
-        file=files[0],
-        projectileFile=files[1],
-        planar=grown.planar,
-        velocity=grown.velocity,
-        criticalRolling=grown.rolling * 1e-10,
-        limit=grown.limit,
-        slidingStiffnessFactor=SLIDING,
-        duration=min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / grown.velocity),
-        states=2,
-        threads=1,
-        out=run,
-    )
+    duration = min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / grown.velocity)
+    arguments = dict(packing="file", file=files[0], projectileFile=files[1], velocity=grown.velocity, out=run)
+    arguments |= dict(criticalRolling=grown.rolling * 1e-10, slidingStiffnessFactor=SLIDING, limit=grown.limit)
+    arguments |= dict(planar=grown.planar, duration=duration, states=2, threads=1)
     command = ["yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "collide.py")]
     command += [f"{name}={value}" for name, value in arguments.items()]
-    # yade-batch's choice of a table's row must not reach the collisions here.
-    environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        lines = [line for line in done.stderr.splitlines() if line.strip()]
-        raise PackingError(f"{grown.name}: collide.py failed: {lines[-1] if lines else done.returncode}")
+        raise PackingError(f"{grown.name}: collide.py failed: {done.stderr.strip()}")
 
 
 def main(arguments):
