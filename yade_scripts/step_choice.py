@@ -1,7 +1,7 @@
 """The longest time step for a tolerance (stepFraction=auto), from measured errors of the energy ledger.
 
 Steps are in units of t0 (Kataoka et al. 2013, K13, eq 2). The ledger closes with second order in the step s, in every
-kind of run that was measured. So an error is a sum of causes, each a number times s^2, and the longest step follows.
+kind of run that was measured. So the error is a sum of causes, each a number times s^2, and the longest step follows.
 What each causes, of the largest |E(t) - E(0)|/K(0) of a collision (e = F_c delta_c, the scale of a contact's energy;
 K(0): of all grains together in their centre of mass; N: their number):
 
@@ -25,8 +25,7 @@ times: a contact with a plate (R* = r, not r/2) has 2^(4/3) the energy and 2^(7/
 In a compression nothing has a speed of its own. What counts is the error over the work of the boundaries until the end:
 FINAL s^2 exp(-DENSER phi), phi the filling at the end; grains that nothing damps vibrate on: UNDAMPED times. The work
 goes with the rolling energy: where that is less than ice's of K13, which is ROLLING_OF_ICE e, errors are larger by the
-ratio to the power of 2/3. Rate and number of grains matter little, and the errors under a piston are no larger. Dense
-silicate and springs that are cut leave much larger errors: refused.
+ratio to the power of 2/3. Dense silicate and springs that are cut leave much larger errors: refused.
 
 The constants are such that 95 % of runs stay below the sum: fitted to the 98 % level of grids of runs and judged by
 runs drawn at random (docs/measurements.md). The typical error is a quarter of it. Drag leaves somewhat smaller errors
@@ -48,84 +47,63 @@ FILLINGS, LEAST_GRAINS, ROLLINGS = (0.1, 0.5), 64, (2.5, 60.0)  # of compression
 ROLLING_OF_ICE = 12.0  # F_c delta_c
 
 
-def require_measured(parameters):
-    """Raise ParameterError for a collision of a kind that was not measured."""
-    _refuse_if(parameters.packing == "file", "packing = file")
-    _refuse_unusual_sliding(parameters)
-    _refuse_if(parameters.sizes != EQUAL, f"sizes = {parameters.sizes}")
-    _refuse_if(parameters.initialOverlap != 1, f"initialOverlap = {parameters.initialOverlap:g}")
+def longest_step(error, parameters, limit):
+    """The longest step [t0] that keeps to parameters.tolerance, rounded down to two digits, at most limit [t0].
+
+    error: of the ledger, over the square of the step. Raises ParameterError for a step shorter than SHORTEST.
+    """
+    step = math.sqrt(parameters.tolerance / error)
+    if step < SHORTEST:
+        raise ParameterError(
+            f"tolerance = {parameters.tolerance:g}: would take a step of {step:.2g} t0; must be at least "
+            f"{1.06 * error * SHORTEST**2:.2g} in this scene, for {SHORTEST:g} t0, or stepFraction a number"
+        )
+    unit = 10.0 ** (math.floor(math.log10(step)) - 1)
+    return min(limit, float(f"{math.floor(round(step / unit, 9)) * unit:.2g}"))
 
 
-def require_measured_compression(parameters, constants):
-    """Raise ParameterError for a compression of a kind that was not measured."""
-    _refuse_unusual_sliding(parameters)
-    _refuse_if(parameters.finalPressure is not None, "finalPressure, which may end a run at any filling")
-    final, rolling = parameters.finalFilling, rolling_energy(constants)
-    range_of = lambda ends: f"only {ends[0]:g} to {ends[1]:g}"
-    _refuse_if(not FILLINGS[0] <= final <= FILLINGS[1], f"finalFilling = {final:.3g}, {range_of(FILLINGS)}")
-    _refuse_if(parameters.grains < LEAST_GRAINS, f"fewer than {LEAST_GRAINS} grains")
-    _refuse_if(parameters.limit == "cut", "limit = cut in a compression")
-    why = f"a rolling energy of {rolling:.3g} F_c delta_c, {range_of(ROLLINGS)} (not ice, or another criticalRolling)"
-    _refuse_if(not ROLLINGS[0] <= rolling <= ROLLINGS[1], why)
+def reason(parameters, limit):
+    """Why parameters.stepFraction is what it is, in one line."""
+    if parameters.tolerance is None:
+        return "as given"
+    why = (
+        "the limit of stability"
+        if parameters.stepFraction == limit
+        else f"below the limit of stability, {limit:.3g} t0"
+    )
+    return f"{parameters.stepFraction:.3g} t0 for a ledger error of at most {parameters.tolerance:g} in 95 % of runs ({why})"
 
 
-def _refuse_unusual_sliding(parameters):
-    factor = parameters.slidingStiffnessFactor
-    _refuse_if(factor != 1, f"slidingStiffnessFactor = {factor:g}")
-
-
-def _refuse_if(wrong, what):
+def refuse_if(wrong, what):
+    """Raise ParameterError for a run that was not measured."""
     if wrong:
         raise ParameterError(f"stepFraction = {AUTO}: not measured with {what}; must be a number [t0] here")
 
 
-def longest_step(errors, parameters, limit):
-    """The longest step that keeps to parameters.tolerance, rounded down to two digits.
+# ---- collisions ----
 
-    Parameters
-    ----------
-    errors : dict
-        {cause: error over the square of the step [1/t0^2]}
-    parameters : RunParameters
-    limit : float
-        Of stability [t0].
 
-    Returns
-    -------
-    float
-        [t0], at most limit.
+def collision_error(parameters, constants):
+    """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level.
 
-    Raises
-    ------
-    ParameterError
-        When the step would be shorter than SHORTEST.
+    constants: of a contact, with those of a bond under "bond" where grains are sintered. Raises ParameterError for a
+    collision of a kind that was not measured.
     """
-    per_square = sum(errors.values())
-    step = math.sqrt(parameters.tolerance / per_square)
-    if step < SHORTEST:
-        least = _rounded(per_square * SHORTEST**2, math.ceil)
-        raise ParameterError(
-            f"tolerance = {parameters.tolerance:g}: would take a step of {step:.2g} t0; must be at least {least:g} "
-            f"in this scene, for {SHORTEST:g} t0, or stepFraction a number"
-        )
-    return min(limit, _rounded(step, math.floor))
-
-
-def collision_errors(parameters, constants):
-    """{cause: error of a collision's ledger [K(0)] over the square of the step [t0]}, 95 % level.
-
-    constants: of a contact, with those of a bond under "bond" where grains are sintered.
-    """
+    sliding = parameters.slidingStiffnessFactor
+    refuse_if(parameters.packing == "file", "packing = file")
+    refuse_if(sliding != 1, f"slidingStiffnessFactor = {sliding:g}")
+    refuse_if(parameters.sizes != EQUAL, f"sizes = {parameters.sizes}")
+    refuse_if(parameters.initialOverlap != 1, f"initialOverlap = {parameters.initialOverlap:g}")
     grains = parameters.grains, parameters.of_projectile().grains
     kinetic, of_grain = energies_of(constants, grains, parameters.velocity)
-    events, speed = ledger_errors(kinetic, of_grain)
-    factor = scene_factor(parameters)
-    found = {"forming and breaking contacts": factor * events, "the speed of the impact": factor * speed}
+    error = scene_factor(parameters) * ledger_error(kinetic, of_grain)
     if bond := constants.get("bond"):
-        over = bond["breakingEnergy"] / (constants["pullOffForce"] * constants["pullOffOverlap"])
+        of_bond = bond["breakingEnergy"] / (constants["pullOffForce"] * constants["pullOffOverlap"])
         breaking = BREAKING if parameters.packing == "cpe" else BREAKING_FLUFFY
-        found["breaking bonds"] = _bond_errors(kinetic / over, of_grain / over, breaking) / bond_step(constants) ** 2
-    return found
+        kinetic, of_grain = kinetic / of_bond, of_grain / of_bond
+        of_bonds = breaking * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY * of_grain**2 / (of_grain**2 + FEW**2)
+        error += of_bonds / bond_step(constants) ** 2
+    return error
 
 
 def energies_of(constants, grains, velocity):
@@ -145,57 +123,30 @@ def scene_factor(parameters):
     return (FLUFFY if parameters.planar or parameters.packing != "cpe" else 1.0) * plate
 
 
-def ledger_errors(kinetic, of_grain):
-    """(of events, of speed): error of the ledger [K(0)] over the square of the step [t0], of CPE aggregates in space;
-    arguments as energies_of() gives them."""
-    return EVENTS * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY, SPEED * of_grain / (1 + of_grain) ** 0.8
+def ledger_error(kinetic, of_grain):
+    """Error [K(0)] over the square of the step [t0], of CPE aggregates in space; energies of energies_of()."""
+    return EVENTS * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY + SPEED * of_grain / (1 + of_grain) ** 0.8
 
 
-def _bond_errors(kinetic, of_grain, breaking):
-    """The same of breaking bonds, over the square of the step [stability.bond_step]; energies over that of a bond."""
-    return breaking * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY * of_grain**2 / (of_grain**2 + FEW**2)
+# ---- compressions ----
 
 
-def compression_errors(parameters, constants):
-    """{cause: error of a compression's ledger [work of the boundaries] over the square of the step [t0]}, 95 %
-    level."""
-    damped = 1.0 if parameters.linearDamping >= DAMPED else UNDAMPED
-    easily_rolled = max(1.0, ROLLING_OF_ICE / rolling_energy(constants)) ** (2 / 3)
-    return {"the contacts that form": FINAL * math.exp(-DENSER * parameters.finalFilling) * damped * easily_rolled}
-
-
-def rolling_energy(constants):
-    """E_roll = 6 pi^2 gamma R xi_crit (K13 eq 1), R the radius of a grain, over F_c delta_c; F_c = 3 pi gamma R/2."""
-    return 4 * math.pi * constants["criticalRolling"] / constants["pullOffOverlap"]
-
-
-def collision_reason(parameters, constants, limit):
-    """Why a collision's parameters.stepFraction is what longest_step() gave, in one line."""
-    drag = f"T_vis = {parameters.viscoelasticTime * 1e12:.3g} ps" if parameters.viscoelasticTime else "no drag"
-    necks = f", necks of {parameters.neck:g}" if parameters.neck else ""
-    grains = parameters.grains + parameters.of_projectile().grains
-    scene = f"{grains} grains at {parameters.velocity:.3g} m/s, {drag}{necks}"
-    return _reason(collision_errors(parameters, constants), parameters, limit, "of K(0)", scene)
-
-
-def compression_reason(parameters, constants, limit):
-    """The same of a compression."""
-    scene = f"to a filling of {parameters.finalFilling:.3g}, k_n = {parameters.linearDamping:g}"
-    return _reason(compression_errors(parameters, constants), parameters, limit, "of the work of the boundaries", scene)
-
-
-def _reason(errors, parameters, limit, unit, scene):
-    step = parameters.stepFraction
-    if step == limit:
-        why = f"set by the limit of stability, where {sum(errors.values()) * step**2:.1g} is expected"
-    else:
-        why = f"set by {max(errors, key=errors.get)}; limit of stability {limit:.3g} t0"
-    return (
-        f"{step:.3g} t0 for a ledger error of at most {parameters.tolerance:g} {unit} in 95 % of runs, {scene} ({why})"
+def compression_error(parameters, constants):
+    """Error of a compression's ledger [work of the boundaries] over the square of the step [t0], 95 % level; raises
+    ParameterError for one of a kind that was not measured."""
+    # E_roll = 6 pi^2 gamma R xi_crit (K13 eq 1) over F_c delta_c; F_c = 3 pi gamma R/2
+    rolling = 4 * math.pi * constants["criticalRolling"] / constants["pullOffOverlap"]
+    final, sliding = parameters.finalFilling, parameters.slidingStiffnessFactor
+    refuse_if(sliding != 1, f"slidingStiffnessFactor = {sliding:g}")
+    refuse_if(parameters.finalPressure is not None, "finalPressure, which may end a run at any filling")
+    refuse_if(
+        not FILLINGS[0] <= final <= FILLINGS[1], f"finalFilling = {final:.3g}, only {FILLINGS[0]} to {FILLINGS[1]}"
     )
-
-
-def _rounded(x, direction):
-    """x at two significant digits, by math.floor or math.ceil."""
-    unit = 10.0 ** (math.floor(math.log10(x)) - 1)
-    return float(f"{direction(round(x / unit, 9)) * unit:.2g}")
+    refuse_if(parameters.grains < LEAST_GRAINS, f"fewer than {LEAST_GRAINS} grains")
+    refuse_if(parameters.limit == "cut", "limit = cut in a compression")
+    range_of_rolling = f"only {ROLLINGS[0]:g} to {ROLLINGS[1]:g} (not ice, or another criticalRolling)"
+    refuse_if(
+        not ROLLINGS[0] <= rolling <= ROLLINGS[1], f"a rolling energy of {rolling:.3g} F_c delta_c, {range_of_rolling}"
+    )
+    damped = 1.0 if parameters.linearDamping >= DAMPED else UNDAMPED
+    return FINAL * math.exp(-DENSER * final) * damped * max(1.0, ROLLING_OF_ICE / rolling) ** (2 / 3)

@@ -123,7 +123,7 @@ WRONG = {
     "grains=100 radius=20": "radius and grains: both given",
     "impact=1.1": "impact = 1.1: must be 0 to 1",
     "poisson=0 viscoelasticTime=1e-12": "poisson = 0: with viscous drag must be > 0",
-    "neck=0.8": "neck = 0.8: must be 0, or above that of a contact that is not sintered",
+    "neck=0.8": "neck = 0.8: must be 0, or above that of a contact",
     "neck=0.5 initialOverlap=0.5": "initialOverlap = 0.5: given with neck = 0.5",
     "material=iron": "material = iron: must be ice or silicate",
     "stepFraction=0.5": "stepFraction = 0.5: must be > 0 and <= 0.4",

@@ -35,8 +35,8 @@ def chosen(**given):
 
 
 def expected_error(parameters, constants):
-    of_kind = rule.compression_errors if hasattr(parameters, "strainRate") else rule.collision_errors
-    return sum(of_kind(parameters, constants).values()) * parameters.stepFraction**2
+    of_kind = rule.compression_error if hasattr(parameters, "strainRate") else rule.collision_error
+    return of_kind(parameters, constants) * parameters.stepFraction**2
 
 
 SCENES = [

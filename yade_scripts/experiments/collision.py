@@ -9,17 +9,25 @@ from math import sqrt
 import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
-from analysis.measures.decided import BREAKING, REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
+from analysis.measures.decided import REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
 from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.files import SUM
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
 from analysis.runs.measured import outcome_of_run
-from yade_scripts import packings, stability
+from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings.aggregate import EQUAL, MOST_GRAINS, MOST_GROWN, AggregateParameters, make, require_growable
+from yade_scripts.packings.aggregate import (
+    EQUAL,
+    MOST_GRAINS,
+    MOST_GROWN,
+    NAMED_PACKING,
+    AggregateParameters,
+    make,
+    require_growable,
+)
 from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
@@ -34,13 +42,11 @@ NOT_WITH_A_PLATE = {
     "impact": "it meets the plate at right angles",
     "neck": "there are no sintered bonds to plates",
 }
+NEEDED_BY_NECKS = {"sizes": EQUAL, "initialOverlap": 1}  # bonds start at rest
 WAY = 4  # radii of the larger aggregate that fluffy ones move at `velocity` in the default duration
 # At 3e3 m/s BCCA aggregates of ice broke down with the default step, at 2e3 they did not.
 VELOCITY = Usual(1e-6, 1e3, "thermal motion of aggregates to a third of sound in ice")
 CHECKS = 100  # times in a run that it is looked whether pieces are apart
-# Of 1,900 runs of the atlas with endWhenApart: below RESTFUL breaking energies a grain most stick and end REST times
-# rebound_time() after the touch; from ten times that on most take all of their duration.
-RESTFUL, REST = 0.05, 2.0
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
@@ -52,14 +58,12 @@ class CollisionParameters(AggregateParameters, RunParameters):
     target: str = parameter(
         AGGREGATE,
         one_of([AGGREGATE, WALL]),
-        "what one aggregate meets: another one, or a plate of the grains' material at rest, which it meets at right "
-        "angles",
+        "what one aggregate meets: another one, or a plate of the grains' material at rest, at right angles",
     )
     impact: float = parameter(
         0.0,
         between(0, 1),
-        "impact parameter B_off in units of the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' "
-        "radii)",
+        "impact parameter B_off over the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii)",
         "1",
     )
     projectileGrains: int | None = parameter(
@@ -67,14 +71,13 @@ class CollisionParameters(AggregateParameters, RunParameters):
     )
     projectileFile: str | None = parameter(
         None,
-        Check("a packing that make_packing.py wrote", lambda text: text != ""),
+        NAMED_PACKING,
         "the projectile's packing (file: the same grains, not turned, so that each meets its own image)",
     )
     neck: float = parameter(
         0.0,
         Check(
-            f"0, or above that of a contact that is not sintered (ice: 0.1237) and at most {LARGEST_NECK}",
-            lambda x: 0 <= x <= LARGEST_NECK,
+            f"0, or above that of a contact (ice: 0.1237) and at most {LARGEST_NECK}", lambda x: 0 <= x <= LARGEST_NECK
         ),
         "neck radius over grain radius of the sintered bonds that the aggregates start with; 0: no bonds (S17)",
         "1",
@@ -83,23 +86,21 @@ class CollisionParameters(AggregateParameters, RunParameters):
         None,
         POSITIVE,
         f"time that is simulated (until the first touch, and {REBOUND_PER_RADIUS} t0 per grain radius of the "
-        f"aggregates' radius: 12.5 ns for ice; aggregates other than cpe at least until they have moved by {WAY} radii "
-        "at `velocity`)",
+        f"aggregates' radius: 12.5 ns for ice; others than cpe at least until they have moved by {WAY} radii)",
         "s",
     )
     impactStepFraction: float | None = parameter(
         None,
         POSITIVE,
-        "shorter time step, below stepFraction, until the aggregates have flown through each other: from the start to "
-        "the time of the first touch and of four radii of the larger one (stepFraction all the time)",
+        "shorter time step until the aggregates have flown through each other: from the start to the time of the "
+        "first touch and of four radii of the larger one (stepFraction all the time)",
         "t0",
     )
     endWhenApart: int | None = parameter(
         None,
         SWITCH,
-        "1: the run ends earlier than duration as soon as no pieces can meet until then (straight lines of the spheres "
-        "around them) and no piece is in motion within itself that could break it (1 where no duration is given, "
-        "else 0)",
+        "1: the run ends as soon as no pieces can meet until duration (straight lines of the spheres around them) and "
+        "no piece is in motion within itself that could break it (1 where no duration is given, else 0)",
     )
 
     ONLY_WITH = {**AggregateParameters.ONLY_WITH, "projectileGrains": tuple(MOST_GROWN), "projectileFile": ("file",)}
@@ -113,16 +114,11 @@ class CollisionParameters(AggregateParameters, RunParameters):
         collision_step.require_usable(found)
         if found.projectileGrains is not None:
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
-        if found.neck:
-            if found.sizes != EQUAL:
-                raise ParameterError(f"sizes = {found.sizes}: given with neck = {found.neck:g}; must be {EQUAL}")
-            if found.initialOverlap != 1:
-                raise ParameterError(
-                    f"initialOverlap = {found.initialOverlap:g}: given with neck = {found.neck:g}; must be 1, bonds "
-                    "start at rest"
-                )
-            if found.packing != "file":  # a file may name its material
-                collision_step.require_sintered(found.neck, pair_constants(found))
+        for name, must in NEEDED_BY_NECKS.items() if found.neck else ():
+            if (value := getattr(found, name)) != must:
+                raise ParameterError(f"{name} = {value}: given with neck = {found.neck:g}; must be {must}")
+        if found.neck and found.packing != "file":  # a file may name its material
+            collision_step.require_sintered(found.neck, pair_constants(found))
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
         return found
@@ -144,7 +140,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
 
 def prepare(parameters, threads):
-    """The Scene of a collision; called within YADE. Raises ParameterError and PackingError."""
+    """The Scene of a collision; called within YADE."""
     from yade_scripts.run import scene as yade_scene
 
     constants = yade_scene.pair_constants(parameters, parameters.neck)
@@ -156,11 +152,13 @@ def prepare(parameters, threads):
     touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
     parameters = with_duration(parameters, constants["timeUnit"], touch)
     aggregate_radius = parameters.radius * parameters.grainRadius
-    controls, reason = [], collision_step.reason(parameters, constants)
+    controls, reason = [], step_choice.reason(parameters, collision_step.step_limit(parameters, constants))
     if parameters.impactStepFraction is not None:
         until = (touch or 0.0) + collision_step.duration_of_impact(parameters)
         controls.append(collision_step.control(parameters, until))
-        reason = collision_step.reason_of_impact(parameters, until)
+        reason = (
+            f"as given: {parameters.impactStepFraction:g} t0 until {until:.4g} s, then {parameters.stepFraction:g} t0"
+        )
     if parameters.endWhenApart:
         controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
     material = yade_scene.material_of(parameters)
@@ -260,10 +258,10 @@ def _time_of_touch(parameters, pair, velocities, bond):
 
 
 def default_duration(parameters, radius, time_unit, touch):
-    """Duration [s] of a run that gives none.
+    """Duration [s] of a run that gives none: close-packed aggregates rebound within rebound_time(); fluffy ones move
+    through each other first.
 
-    Close-packed aggregates rebound within rebound_time(); fluffy ones move through each other first. radius: of the
-    larger aggregate in grain radii; time_unit: t0 [s]; touch: time of the first touch [s].
+    radius: of the larger aggregate in grain radii; time_unit: t0 [s]; touch: time of the first touch [s].
     """
     way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
     return touch + max(rebound_time(radius, time_unit), way)
@@ -319,7 +317,7 @@ def estimate(parameters):
     """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
     constants = pair_constants(parameters, neck=parameters.neck)
     planar, time_unit = bool(parameters.planar), constants["timeUnit"]
-    grains = _grain_numbers(parameters)
+    one, other = _grain_numbers(parameters)
     if parameters.packing == "file":
         neighbours = NEIGHBOURS / 2
     elif parameters.is_grown:
@@ -327,25 +325,22 @@ def estimate(parameters):
     else:
         full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
         neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
-    radius = parameters.radius or _typical_radius(parameters.packing, max(grains), planar)
+    radius = parameters.radius or _typical_radius(parameters.packing, max(one, other), planar)
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
-    end = duration = parameters.duration or default_duration(parameters, radius, time_unit, touch)
-    restful = RESTFUL * (1 - parameters.impact) ** 2
-    if parameters.endWhenApart and _energy_of_grain(parameters, grains, constants) < restful:
-        end = min(duration, touch + REST * rebound_time(radius, time_unit))
-    steps = duration / time_unit / collision_step.expected(parameters, constants)
-    if parameters.impactStepFraction is not None:
-        steps += collision_step.more_steps(parameters.changed(radius=radius), touch, duration, time_unit)
-    share = end / duration
-    return Estimate(sum(grains), sum(grains) * neighbours / 2, share * steps, share)
+    duration = parameters.duration or default_duration(parameters, radius, time_unit, touch)
+    try:
+        steps = duration / time_unit / collision_step.step(parameters, constants)
+    except ParameterError:  # the run ends with this line
+        steps = duration / time_unit / step_choice.SHORTEST
+    if short := parameters.impactStepFraction:
+        impact = min(touch + collision_step.duration_of_impact(parameters.changed(radius=radius)), duration)
+        steps += impact / time_unit * (1 / short - 1 / parameters.stepFraction)
+    return Estimate(one + other, (one + other) * neighbours / 2, steps)
 
 
 def expected(parameters, run):
-    """What a run's run.json should hold of size and duration where the parameters leave them open; and of files that
-    have changed since.
-
-    Runs of format 1 didn't count the time until the first touch, and aggregates that pass each other have none.
-    """
+    """What a run's run.json should hold of size and duration where the parameters leave them open, and of files that
+    have changed since. Aggregates that pass each other have no first touch, nor have runs of format 1."""
     held, derived = run.get("parameters", {}), run.get("derived", {})
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
@@ -361,22 +356,16 @@ def expected(parameters, run):
 
 
 def _grain_numbers(parameters):
-    """Grains of the aggregates; of files that can't be read as if they held one each."""
-    of = (parameters,) if parameters.target == WALL else (parameters, parameters.of_projectile())
+    """Grains of target (0: a plate) and projectile; of files that can't be read as if they held one each."""
+    projectile = parameters.of_projectile()
     if parameters.packing != "file":
-        return tuple(p.grains for p in of)
-    try:
-        return tuple(packings.load(p.file).grains for p in of)
-    except packings.PackingError:
-        return len(of) * (1,)
-
-
-def _energy_of_grain(parameters, grains, constants):
-    """K(0) of a grain of the aggregates (numbers of their grains) over what breaks a contact."""
-    target, projectile = grains if len(grains) == 2 else (np.inf, *grains)  # a plate
-    moving = projectile / (1 + projectile / target)  # grains' masses, of the relative motion
-    kinetic = moving * 2 * constants["reducedMass"] * parameters.velocity**2 / 2
-    return kinetic / sum(grains) / (BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"])
+        numbers = parameters.grains, projectile.grains
+    else:
+        try:
+            numbers = tuple(packings.load(file).grains for file in (parameters.file, projectile.file))
+        except packings.PackingError:
+            numbers = 1, 1
+    return (0, numbers[0]) if parameters.target == WALL else numbers
 
 
 def _typical_radius(packing, grains, planar):

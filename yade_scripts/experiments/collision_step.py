@@ -12,7 +12,6 @@ from yade_scripts import stability, step_choice
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.parameters import ParameterError
-from yade_scripts.stability import AUTO
 
 LARGEST_NECK = 0.7  # the largest of S17
 SHORTEST = 100  # parts of stepFraction: shorter ones would be a slip of the pen, and a run without end
@@ -30,12 +29,23 @@ def complete(parameters, constants, threads):
         require_small_contacts(pair_constants(parameters, (smallest, smallest)))
     require_sintered(parameters.neck, constants)
     limit = step_limit(parameters, constants)
-    parameters = parameters.changed(stepFraction=_step(parameters, constants, limit))
+    parameters = parameters.changed(stepFraction=step(parameters, constants))
     sintered = "neck, filling and drag" if parameters.neck else "filling and drag"
     stability.require_stable(parameters.stepFraction, limit, sintered)
     if parameters.duration is not None:
         stability.require_countable(parameters.duration, parameters.stepFraction, constants["timeUnit"])
     return parameters.with_threads(threads)
+
+
+def step(parameters, constants):
+    """stepFraction [t0], chosen where it is auto; raises ParameterError."""
+    if parameters.stepFraction != stability.AUTO:
+        return parameters.stepFraction
+    measured = parameters
+    if parameters.target == "wall":  # half of a pair meets its image as an aggregate a plate
+        measured = parameters.changed(velocity=2 * parameters.velocity)
+    error = step_choice.collision_error(measured, constants)
+    return step_choice.longest_step(error, parameters, step_limit(parameters, constants))
 
 
 def step_limit(parameters, constants):
@@ -73,52 +83,23 @@ def require_sintered(neck, constants):
         )
 
 
-def reason(parameters, constants):
-    """How complete() came to parameters.stepFraction, in one line."""
-    if parameters.tolerance is None:
-        return "as given"
-    return step_choice.collision_reason(_as_pair(parameters), constants, step_limit(parameters, constants))
-
-
-def expected(parameters, constants):
-    """stepFraction as a run will have it."""
-    try:
-        return _step(parameters, constants, step_limit(parameters, constants))
-    except ParameterError:  # the run ends with this line
-        return step_choice.SHORTEST
-
-
-def _step(parameters, constants, limit):
-    if parameters.stepFraction != AUTO:
-        return parameters.stepFraction
-    as_pair = _as_pair(parameters)
-    step_choice.require_measured(as_pair)
-    return step_choice.longest_step(step_choice.collision_errors(as_pair, constants), parameters, limit)
-
-
-def _as_pair(parameters):
-    """The parameters as step_choice knows them, which was measured on pairs: half of a pair meets its image as an
-    aggregate a plate."""
-    return parameters.changed(velocity=2 * parameters.velocity) if parameters.target == "wall" else parameters
-
-
 # ---- a shorter step at the impact ----
 
 
 def require_usable(parameters):
     """Raise ParameterError when parameters.impactStepFraction doesn't go with the others."""
-    step = parameters.impactStepFraction
-    if step is None:
+    short, usual = parameters.impactStepFraction, parameters.stepFraction
+    if short is None:
         return
-    if parameters.stepFraction == AUTO:
-        given, must = f"stepFraction = {AUTO}", "be left out, or stepFraction be a number"
+    if usual == stability.AUTO:
+        given, must = f"stepFraction = {usual}", "be left out, or stepFraction be a number"
     elif parameters.engine != "fused":
         given, must = f"engine = {parameters.engine}", "be left out: their step stays the same"
-    elif not parameters.stepFraction / SHORTEST <= step < parameters.stepFraction:
-        given, must = f"stepFraction = {parameters.stepFraction:g}", "be below it and at least a hundredth of it"
+    elif not usual / SHORTEST <= short < usual:
+        given, must = f"stepFraction = {usual:g}", "be below it and at least a hundredth of it"
     else:
         return
-    raise ParameterError(f"impactStepFraction = {step:g}: given with {given}; must {must}")
+    raise ParameterError(f"impactStepFraction = {short:g}: given with {given}; must {must}")
 
 
 def duration_of_impact(parameters):
@@ -126,19 +107,9 @@ def duration_of_impact(parameters):
     return RADII * parameters.radius * parameters.grainRadius / parameters.velocity
 
 
-def more_steps(parameters, touch, end, time_unit):
-    """How many more steps than with stepFraction alone a run takes; first touch, end of the run and t0 [s]."""
-    until = min(touch + duration_of_impact(parameters), end)
-    return until / time_unit * (1 / parameters.impactStepFraction - 1 / parameters.stepFraction)
-
-
-def reason_of_impact(parameters, until):
-    """The two steps in one line; until: when the longer one begins [s]."""
-    return f"as given: {parameters.impactStepFraction:g} t0 until {until:.4g} s, then {parameters.stepFraction:g} t0"
-
-
 def control(parameters, until):
-    """Scene.control that sets the small steps between two samples: as many as make none longer than it may be."""
+    """Scene.control that sets the small steps between two samples: until that time [s] as many as make none longer
+    than impactStepFraction."""
     ratio = parameters.stepFraction / parameters.impactStepFraction
 
     def set_steps(recorder, state):

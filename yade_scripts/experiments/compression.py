@@ -12,6 +12,7 @@ import numpy as np
 
 from analysis.measures.periodic_cell import AVERAGED, contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION, value_text
+from analysis.theory.aggregates import bcca_coordination
 from yade_scripts import packings, stability, step_choice
 from yade_scripts.experiments.compression_end import (
     AXES,
@@ -31,7 +32,7 @@ from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterErro
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
-RANDOM_CLOSE_PACKING = 0.64  # of spheres that do not overlap
+CLOSE_PACKED = 0.64  # of spheres that do not overlap
 FINAL_FILLING = 0.5
 SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
 BETWEEN_SAMPLES = 40.0  # t0; a sample takes as long as 20 steps
@@ -65,7 +66,7 @@ class CompressionParameters(GrainParameters, RunParameters):
     packing: str | None = parameter(
         None,
         one_of(list(PACKING.values())),
-        "how it is made: with boundary = periodic by cluster-cluster aggregation (bcca), between walls by ballistic "
+        "how it is made: in a periodic cell by cluster-cluster aggregation (bcca), between walls by ballistic "
         "deposition on the lower one, as high as wide (rbd)",
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
@@ -79,16 +80,14 @@ class CompressionParameters(GrainParameters, RunParameters):
     initialFilling: float | None = parameter(
         None,
         Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
-        "volume filling factor of the cell at the start (the cluster's extent in x, y or z is the edge; that of the "
-        "layer between walls, where it cannot be given)",
+        "volume filling factor of the cell at the start (its edge is the cluster's extent in x, y or z; between walls "
+        "that of the layer, where it cannot be given)",
         "1",
     )
     finalFilling: float | None = parameter(
         None,
         Check(
-            f"> initialFilling and at most that of random close packing ({RANDOM_CLOSE_PACKING:g}, of grains that "
-            "overlap a little more)",
-            lambda x: 0 < x < 1,
+            f"> initialFilling and at most that of random close packing (about {CLOSE_PACKED:g})", lambda x: 0 < x < 1
         ),
         f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
         "1",
@@ -106,8 +105,8 @@ class CompressionParameters(GrainParameters, RunParameters):
     stretchFilling: float | None = parameter(
         None,
         Check("> 0 and below finalFilling", lambda x: x > 0),
-        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); at finalPressure the "
-        "cell may be looser already: then it is not stretched",
+        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); a cell that is looser at "
+        "finalPressure is not stretched",
         "1",
     )
     states: int = parameter(
@@ -124,7 +123,7 @@ class CompressionParameters(GrainParameters, RunParameters):
         return name, ("boundary", "material", "grains", "strainRate", "seed")
 
     def filled_in(self):
-        """Refuses an end of a stretching that is not wanted."""
+        """As GrainParameters; refuses what doesn't go together."""
         if self.stretchFilling is not None and self.stretch == "no":
             raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: given with stretch = no; must be left out")
         self.require_stretched_below(self.finalFilling)
@@ -132,16 +131,13 @@ class CompressionParameters(GrainParameters, RunParameters):
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
         for name, must, why in OF_WALLS if self.boundary == WALLS else ():
-            if getattr(self, name) != must:
-                raise ParameterError(
-                    f"{name} = {getattr(self, name)}: given with boundary = {WALLS}; must be {must or 'left out'}: "
-                    f"{why}"
-                )
+            if (value := getattr(self, name)) != must:
+                wanted = f"must be {must or 'left out'}: {why}"
+                raise ParameterError(f"{name} = {value}: given with boundary = {WALLS}; {wanted}")
         return super(CompressionParameters, self.changed(packing=packing)).filled_in()
 
     def require_stretched_below(self, final):
-        """Raises ParameterError where the stretching would end at a filling factor of final (None: not known) or
-        above."""
+        """Raise ParameterError where the stretching would not end below a filling factor (None: not known)."""
         if None not in (self.stretchFilling, final) and self.stretchFilling >= final:
             raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: must be below finalFilling = {final:g}")
 
@@ -155,7 +151,7 @@ def densest(constants):
     """Filling factor of random close packing of grains that overlap as contacts at rest do (K13 eq 22 counts overlaps
     twice)."""
     diameter = 4 * constants["reducedRadius"]
-    return RANDOM_CLOSE_PACKING * (diameter / (diameter - constants["equilibriumOverlap"])) ** 3
+    return CLOSE_PACKED * (diameter / (diameter - constants["equilibriumOverlap"])) ** 3
 
 
 def complete(parameters, constants, threads):
@@ -174,16 +170,7 @@ def complete(parameters, constants, threads):
 def _step(parameters, constants, limit):
     if parameters.stepFraction != stability.AUTO:
         return parameters.stepFraction
-    step_choice.require_measured_compression(parameters, constants)
-    return step_choice.longest_step(step_choice.compression_errors(parameters, constants), parameters, limit)
-
-
-def reason_of_step(parameters, constants):
-    """How complete() came to parameters.stepFraction, in one line."""
-    if parameters.tolerance is None:
-        return "as given"
-    limit = stability.step_limit(constants, parameters.finalFilling)
-    return step_choice.compression_reason(parameters, constants, limit)
+    return step_choice.longest_step(step_choice.compression_error(parameters, constants), parameters, limit)
 
 
 def _with_final_filling(parameters, constants):
@@ -240,7 +227,7 @@ def prepare(parameters, threads):
         control=come_down if parameters.boundary == WALLS else end,
         ended_by=end.ended_by,
         interval=max(1, round(between / parameters.stepFraction)),
-        step_choice=reason_of_step(parameters, constants),
+        step_choice=step_choice.reason(parameters, stability.step_limit(constants, parameters.finalFilling)),
     )
 
 
@@ -354,22 +341,16 @@ def series_between_walls(state):
 
 def estimate(parameters):
     """Estimate of a run, without its cluster: two contacts a grain, more where it is dense (A24 eq 45)."""
-    from analysis.theory.aggregates import bcca_coordination
-
     constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
     try:
         ends = _with_final_filling(parameters, constants)
-    except ParameterError:  # the run ends with this line
-        ends = parameters.changed(finalFilling=FINAL_FILLING, stretch="no")
-    try:
         step = _step(ends, constants, stability.step_limit(constants, ends.finalFilling))
-    except ParameterError:
-        step = step_choice.SHORTEST
+    except ParameterError:  # the run ends with this line
+        ends, step = parameters.changed(finalFilling=FINAL_FILLING, stretch="no"), step_choice.SHORTEST
     typical = DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
-    first = ends.initialFilling or typical
-    ends = ends.changed(initialFilling=min(first, 0.9 * ends.finalFilling))
-    duration = parameters.duration or longest_duration(ends, constants["timeUnit"])
-    fillings = np.exp(np.linspace(log(ends.initialFilling), log(ends.finalFilling), 50))
+    first = min(ends.initialFilling or typical, 0.9 * ends.finalFilling)
+    duration = parameters.duration or longest_duration(ends.changed(initialFilling=first), constants["timeUnit"])
+    fillings = np.exp(np.linspace(log(first), log(ends.finalFilling), 50))
     contacts = parameters.grains * float(bcca_coordination(fillings).mean()) / 2
     return Estimate(parameters.grains, contacts, duration / constants["timeUnit"] / step)
 

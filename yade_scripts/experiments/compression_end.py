@@ -38,24 +38,19 @@ class Ending:
     def __init__(self, parameters, time_unit):
         self.parameters, self.rate = parameters, shrinking_rate(parameters, time_unit)
         self.window = AVERAGED * time_unit
-        self._loose = parameters.stretchFilling
 
     def __call__(self, recorder, state):
-        filling = recorder.recent("filling")[-1]
+        filling, loose = recorder.recent("filling")[-1], self.parameters.stretchFilling
         if rates().max() > 0:
-            if self._loose is None:
-                self._loose = LOOSE * recorder.recent("filling", np.inf).max()
-            return filling <= self._loose
+            return filling <= (loose or LOOSE * recorder.recent("filling", np.inf).max())
         if not self.is_pressed(recorder):
             return False
         axes = AXES[self.parameters.stretch]
         if not axes:
             return True
-        if self._loose is not None and filling <= self._loose:
-            tell(
-                f"stretchFilling = {self._loose:g}: the pressure was reached at a filling of {filling:.3g}; "
-                "the cell is not stretched"
-            )
+        if loose is not None and filling <= loose:
+            reached = f"the pressure was reached at a filling of {filling:.3g}"
+            tell(f"stretchFilling = {loose:g}: {reached}; the cell is not stretched")
             return True
         deform([self.rate * (axis in axes) for axis in range(3)])
         return False
@@ -89,42 +84,37 @@ class Ending:
 def with_start(parameters, time_unit):
     """The parameters with a duration; they have an initialFilling. Raises ParameterError where nothing, or no pressure,
     would be reached."""
-    if parameters.finalFilling <= parameters.initialFilling:
+    first, final, rate = parameters.initialFilling, parameters.finalFilling, parameters.strainRate
+    if final <= first:
+        raise ParameterError(f"finalFilling = {final:g}: must be above the {first:.4g} of the start")
+    lasts = time_to_filling(parameters, time_unit)
+    if parameters.finalPressure is not None and min(lasts, parameters.duration or np.inf) < AVERAGED * time_unit:
         raise ParameterError(
-            f"finalFilling = {parameters.finalFilling:g}: must be above the {parameters.initialFilling:.4g} of the "
-            "start"
+            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, before which the compression "
+            f"is over; must be left out, or duration at least {1.01 * AVERAGED * time_unit:.3g} and strainRate at most "
+            f"{0.99 * rate * lasts / (AVERAGED * time_unit):.3g}"
         )
-    _require_time_for_pressure(parameters, time_unit)
     if parameters.duration is not None:
         return parameters
     duration, step = longest_duration(parameters, time_unit), parameters.stepFraction
     steps = duration / (step * time_unit)
     if steps > stability.MOST_STEPS:
         raise ParameterError(
-            f"strainRate = {parameters.strainRate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
-            f"{parameters.strainRate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
+            f"strainRate = {rate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
+            f"{rate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
         )
     return parameters.changed(duration=duration)
-
-
-def _require_time_for_pressure(parameters, time_unit):
-    """Raise ParameterError where the compression is over before its pressure can be averaged."""
-    if parameters.finalPressure is None:
-        return
-    to_filling = time_to_filling(parameters, time_unit) / time_unit
-    lasts = min(to_filling, (parameters.duration or np.inf) / time_unit)
-    if lasts < AVERAGED:
-        longer = f"duration at least {1.01 * AVERAGED * time_unit:.3g}"
-        slower = f"strainRate at most {0.99 * parameters.strainRate * to_filling / AVERAGED:.3g}"
-        raise ParameterError(
-            f"finalPressure = {parameters.finalPressure:g}: a mean over {AVERAGED:g} t0, and the compression is over "
-            f"after {lasts:.3g} t0; must be left out, or {slower if to_filling < AVERAGED else longer}"
-        )
 
 
 def shrinking_rate(parameters, time_unit):
     """Rate [1/s] of lengths L = L0 exp(-rate t) (K13 eq 7)."""
     return 2 * parameters.strainRate / time_unit
+
+
+def time_to_filling(parameters, time_unit):
+    """Time [s] from initialFilling to finalFilling (K13 eq 7)."""
+    rate = parameters.axes * shrinking_rate(parameters, time_unit)
+    return log(parameters.finalFilling / parameters.initialFilling) / rate
 
 
 def longest_duration(parameters, time_unit):
@@ -135,9 +125,3 @@ def longest_duration(parameters, time_unit):
         loose = parameters.stretchFilling or LOOSE * parameters.finalFilling
         time += log(parameters.finalFilling / loose) / (axes * shrinking_rate(parameters, time_unit))
     return 1.01 * time
-
-
-def time_to_filling(parameters, time_unit):
-    """Time [s] from initialFilling to finalFilling (K13 eq 7)."""
-    rate = parameters.axes * shrinking_rate(parameters, time_unit)
-    return log(parameters.finalFilling / parameters.initialFilling) / rate

@@ -18,6 +18,7 @@ GRAINS_GROWN = 1024
 MADE = ("cpe", *MOST_GROWN)
 EQUAL, TWO, LOGNORMAL = SIZES = ("equal", "two", "lognormal")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
+NAMED_PACKING = Check("a packing that make_packing.py wrote", lambda text: text != "")
 WIDEST = 2.5  # standard deviations of ln r at which a log-normal distribution is cut off on both sides
 
 
@@ -28,15 +29,13 @@ class AggregateParameters(GrainParameters):
     packing: str = parameter(
         "cpe",
         one_of([*MADE, "file"]),
-        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, or read "
-        "from file",
+        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, read from file",
     )
     filling: float | None = parameter(
         None,
         Check("> 0 and at most what the lattice holds", lambda x: x > 0),
-        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4); of others the sum of (r/R)^3 or "
-        "(r/R)^2 is found, with R from the centre to that of the farthest grain; largest_filling_factor of tables has "
-        "R = (5/3)^(1/2) R_g",
+        "filling factor N (r/R)^3 of a cpe aggregate, N (r/R)^2 of a planar one (0.4); of others it is found, with R "
+        "from the centre to that of the farthest grain (largest_filling_factor of tables: R = (5/3)^(1/2) R_g)",
         "1",
     )
     radius: float | None = parameter(
@@ -46,9 +45,7 @@ class AggregateParameters(GrainParameters):
         None, between(2, MOST_GRAINS), f"grains of an aggregate, instead of radius (bcca, bpca: {GRAINS_GROWN})"
     )
     planar: int = parameter(0, SWITCH, "1: grains confined to a plane")
-    file: str | None = parameter(
-        None, Check("a packing that make_packing.py wrote", lambda text: text != ""), "packing of packing = file"
-    )
+    file: str | None = parameter(None, NAMED_PACKING, "packing of packing = file")
     sizes: str = parameter(
         EQUAL,
         one_of(SIZES),
@@ -63,14 +60,11 @@ class AggregateParameters(GrainParameters):
     sizeSpread: float | None = parameter(
         None,
         Check("> 0 and at most 0.7", lambda x: 0 < x <= 0.7),
-        "sizes = lognormal: standard deviation of ln r around ln grainRadius, " f"cut off at {WIDEST:g} of it",
+        f"sizes = lognormal: standard deviation of ln r around ln grainRadius, cut off at {WIDEST:g} of it",
         "1",
     )
     removeLooseGrains: int = parameter(
-        0,
-        SWITCH,
-        "1: grains of a cpe aggregate outside its largest connected piece are left out, which stays where it was: "
-        "impact is that of the spheres",
+        0, SWITCH, "1: grains of a cpe aggregate outside its largest connected piece are left out"
     )
     initialOverlap: float = parameter(
         1.0,
@@ -129,10 +123,11 @@ class AggregateParameters(GrainParameters):
                 raise ParameterError(
                     f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out"
                 )
-        needed = {TWO: "sizeRatio", LOGNORMAL: "sizeSpread"}.get(self.sizes)
-        if needed and getattr(self, needed) is None:
-            raise ParameterError(f"{needed}: not given with sizes = {self.sizes}; {self.columns()[needed].must}")
-        return self.changed(sizeFraction=0.5) if self.sizes == TWO and self.sizeFraction is None else self
+        found = self.changed(sizeFraction=0.5) if self.sizes == TWO and self.sizeFraction is None else self
+        for name, of in OF_SIZES.items():
+            if self.sizes == of and getattr(found, name) is None:
+                raise ParameterError(f"{name}: not given with sizes = {self.sizes}; {self.columns()[name].must}")
+        return found
 
     def _of_cpe(self):
         dimensions = 2 if self.planar else 3

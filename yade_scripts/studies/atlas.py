@@ -181,7 +181,7 @@ def step(scene):
     given |= {"grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
     alike = _parsed(CollisionParameters, given)
     energies = step_choice.energies_of(contact_constants(alike), scene.grains, scene.velocity)
-    error = step_choice.scene_factor(alike) * sum(step_choice.ledger_errors(*energies))
+    error = step_choice.scene_factor(alike) * step_choice.ledger_error(*energies)
     return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
 
 
