@@ -158,4 +158,4 @@ def test_rows_of_the_atlas_are_the_same_in_every_size():
         large, small = scene.grains
         assert 64 <= large + small <= (1024 if number < 2000 else 4096) and large >= small >= 4 and large <= 73 * small
     rows_, cell = [atlas.row(scene) for scene in scenes[:50]], scenes[1].cell
-    assert all(0.01 < row["stepFraction"] <= 0.2 for row in rows_) and cell in atlas.CELL_SEEDS[1024]
+    assert all(0.01 < row["stepFraction"] <= 0.2 for row in rows_) and cell in atlas.CELLS_OF[1024][1]

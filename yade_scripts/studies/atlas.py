@@ -1,10 +1,10 @@
 """The collisions of the atlas: points of structure, size, mass ratio, velocity, impact parameter and filling.
 
-    python3 yade_scripts/study.py atlas-cells -j 2             the cells that compressed aggregates are cut out of;
-                                                               full needs atlas-cells-full too
+    python3 yade_scripts/study.py atlas-cells -j 2             cells out of which compressed aggregates are cut; full
+                                                               needs atlas-cells-full too
     python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]   runs/atlas-pilot.table and the packings of its rows; also
-                                                               desk, full. FIRST LAST: rows FIRST to before LAST alone,
-                                                               in runs/atlas-pilot-FIRST-LAST.table
+                                                               desk, full; FIRST LAST: of rows FIRST to before LAST, in
+                                                               runs/atlas-pilot-FIRST-LAST.table
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
 
 make study-atlas SIZE=pilot does all of it. Row i is the same in every size, 500, 2,000 and 14,000 rows.
@@ -48,7 +48,8 @@ from yade_scripts.run import table
 
 SIZES = {"pilot": 500, "desk": 2_000, "full": 14_000}
 RUNS, PACKINGS, CELLS = "runs/atlas", "runs/atlas-packings", "runs/atlas-cells"
-SEED, DIMENSIONS = 20260, 6
+SEED, DIMENSIONS, CANDIDATES = 20260, 6, 8
+BLOCK = 10  # rows of which one is held out and one of silicate
 STRUCTURES = ("bcca", "bpca", "cpe", "compressed")
 FEWEST, MOST = 64, {SIZES["desk"]: 1_024, SIZES["full"]: 4_096}  # grains of both; the most up to that row
 LEAST, MOST_UNEQUAL = 4, 64  # grains of the smaller one; mass ratio
@@ -59,18 +60,15 @@ TOLERANCE, LONGEST = 0.01, 0.2  # of the ledger, over K(0), in 95 % of runs; ste
 MISSED = "1e-9"  # s: duration of pairs that never touch on straight ways
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
 KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
-CANDIDATES = 8  # of which one was chosen
 SEED_STEP = 10_000  # from one draw of a close-packed aggregate to the next
-BLOCK = 10  # rows of which one is held out and one of silicate
-# Seeds of the cells for pairs of up to so many grains; a cell has twice as many.
-CELL_SEEDS = {1_024: range(1, 11), 4_096: range(11, 21)}
-CELL_TABLES = {1_024: "atlas-cells", 4_096: "atlas-cells-full"}
+# {most grains of a pair: (table of its cells, which have twice as many grains, seeds)}
+CELLS_OF = {1_024: ("atlas-cells", range(1, 11)), 4_096: ("atlas-cells-full", range(11, 21))}
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A row: grains and packing files of target and projectile, velocity [m/s], filling that CPE and compressed
-    aggregates are to have, seed of its packings, seed of the cell of a compressed pair and that cell's table."""
+    """A row: grains and packing files of target and projectile, velocity [m/s], filling of CPE and compressed
+    aggregates, seed of its packings, cell of a compressed pair and that cell's table."""
 
     name: str
     held: bool
@@ -126,10 +124,9 @@ def _scene(number, point, silicate, held):
     total = between(point[1], FEWEST, most)
     ratio = between(point[2], 1.0, min(MOST_UNEQUAL, total / LEAST - 1))
     projectile = round(total / (1 + ratio))
-    scale = 1.0
-    if silicate:
-        scale = breaking_velocity(SILICATE, GRAIN_RADIUS) / breaking_velocity(ICE, GRAIN_RADIUS)
+    scale = breaking_velocity(SILICATE, GRAIN_RADIUS) / breaking_velocity(ICE, GRAIN_RADIUS) if silicate else 1.0
     low, high = FILLINGS.get(structure, (0.0, 0.0))
+    cells, cell_seeds = CELLS_OF[most]
     return Scene(
         name=f"{number:05d}" + ("-held" if held else ""),
         held=held,
@@ -140,8 +137,8 @@ def _scene(number, point, silicate, held):
         impact=point[4] ** 0.5,
         filling=low + (high - low) * point[5],
         seed=SEED + number,
-        cell=CELL_SEEDS[most][number % len(CELL_SEEDS[most])],
-        cells=CELL_TABLES[most],
+        cell=cell_seeds[number % len(cell_seeds)],
+        cells=cells,
         files=tuple(f"{PACKINGS}/{number:05d}{end}.npz" for end in ("", "-b")),
     )
 
@@ -233,10 +230,10 @@ def tables():
     head = "Cells that are compressed, out of which the atlas's compressed aggregates are cut.\n"
     head += "Units: strainRate: 1/t0; stepFraction: t0."
     found = {}
-    for most, name in CELL_TABLES.items():
+    for most, (name, seeds) in CELLS_OF.items():
         row = {"!SCRIPT": "yade_scripts/compress.py", "grains": 2 * most, "strainRate": "1e-5", "finalFilling": 0.5}
         row |= {"stepFraction": 0.3, "states": 60, "threads": 1}
-        rows = [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in CELL_SEEDS[most]]
+        rows = [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in seeds]
         found[name.removeprefix("atlas-")] = rows, head
     return found
 

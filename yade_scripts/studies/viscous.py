@@ -3,14 +3,9 @@
 full: section 2.4, 416 collisions of aggregates of 50,000 grains, one seed. desk: an evening on two cores: the whole
 grid of B_off, speed and T_vis with aggregates of 500 grains and several seeds, the speeds around v_fra with 2,000, both
 at twice the time step, and the paper's own size where Fig. 1 is, with three pairs of aggregates where the paper has
-one. Rows stand in the order of their worth: whole grids of one seed after another.
-
-prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran, and one head-on collision of the paper's size: every second offset first,
-then the others. The predictions are of all 13, which the first block alone does not test.
-
-own: the paper's own size, with and without drag, followed to the paper's last time: four pairs at 50.1 m/s, the offsets
-about the edge of merging first, then all 13; then six at 63.1 m/s, without drag first, so that v_fra lies between the
-two."""
+one. prediction: larger aggregates, whose <f_gro> was predicted from those of 500 and 2,000 grains before they ran, and
+one head-on collision of the paper's size. own: the paper's own size, with and without drag, followed to the paper's
+last time. Rows stand in the order of their worth: whole grids of one seed after another."""
 
 from itertools import product
 
@@ -86,24 +81,10 @@ def rows(scenes, folder, **others):
     found = []
     for grains, twelfths, i, time, seed in scenes:
         name = f"n{grains}-v{i}-b{twelfths}-t{time}-s{seed}"
-        found.append(
-            {
-                "description": name,
-                "packing": "bpca",
-                "grains": grains,
-                "impact": f"({twelfths}/12)**0.5",
-                "velocity": f"10**(0.1*{i})",
-                "viscoelasticTime": f"{time}e-12",
-                "seed": seed,
-                "duration": DURATION,
-                "endWhenApart": 1,
-                "states": STATES,
-                "stepFraction": STEP if grains == FULL_GRAINS else LONGER_STEP,
-                "threads": 1,
-                "out": f"{folder}/{name}",
-                **others,
-            }
-        )
+        row = {"description": name, "packing": "bpca", "grains": grains, "impact": f"({twelfths}/12)**0.5"}
+        row |= {"velocity": f"10**(0.1*{i})", "viscoelasticTime": f"{time}e-12", "seed": seed, "duration": DURATION}
+        row |= {"endWhenApart": 1, "states": STATES, "stepFraction": STEP if grains == FULL_GRAINS else LONGER_STEP}
+        found.append({**row, "threads": 1, "out": f"{folder}/{name}", **others})
     return found
 
 
@@ -115,14 +96,11 @@ HEAD = (
 
 def tables():
     """{size: (rows, head)}."""
-    followed = rows(own(), "runs/viscous-own", **FOLLOWED)
-    small = "Smaller aggregates, and six collisions of the paper's size."
-    return {
-        "desk": (rows(desk(), "runs/viscous"), HEAD.format(small)),
-        "prediction": (
-            rows(prediction(), "runs/viscous"),
-            HEAD.format("Larger aggregates, predicted before they ran."),
-        ),
-        "full": (rows(full(), "runs/viscous-full"), HEAD.format("All of the paper's.")),
-        "own": (followed, HEAD.format("The paper's size at 50.1 and 63.1 m/s, to its last time.")),
+    found = {
+        "desk": (desk(), "runs/viscous", "Smaller aggregates, and six collisions of the paper's size."),
+        "prediction": (prediction(), "runs/viscous", "Larger aggregates, predicted before they ran."),
+        "full": (full(), "runs/viscous-full", "All of the paper's."),
     }
+    found = {size: (rows(scenes, folder), HEAD.format(which)) for size, (scenes, folder, which) in found.items()}
+    followed = rows(own(), "runs/viscous-own", **FOLLOWED)
+    return {**found, "own": (followed, HEAD.format("The paper's size at 50.1 and 63.1 m/s, to its last time."))}
