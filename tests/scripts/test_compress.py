@@ -152,7 +152,7 @@ def test_functors_give_the_same_pressure(tmp_path):
     "arguments, message",
     [
         ("finalFilling=0.7", "finalFilling = 0.7: beyond random close packing; must be at most 0.650"),
-        ("strainRate=1e-3 finalPressure=1e3", "finalPressure = 1000: a mean over 1000 t0, and the compression is over"),
+        ("strainRate=1e-3 finalPressure=1e3", "finalPressure = 1000: a mean over 1000 t0"),
         ("finalFilling=1e-5", "finalFilling = 1e-05: must be above the 0.008166 of the start"),
         ("initialFilling=0.2", "initialFilling = 0.2: "),  # the cluster would touch its images
         ("grains=20", "grains = 20: the cell would be too small at a filling of 0.5"),
