@@ -8,9 +8,10 @@
 
 Rows whose run folder has ended are skipped, provided that its parameters are the row's (its duration may be longer);
 runs that were killed, or ended undecided before the row's duration, resume from their last checkpoint. Before anything
-runs, the time it will take is estimated and printed. Ctrl-C and SIGTERM stop the runs, each with a checkpoint. Logs are
-in runs/logs/NAME of the table. TABLE may also be the name of a study's table, elastoplastic-desk, which is written into
-yade_scripts/studies if it isn't there. Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS count.
+runs, the time it will take is printed: steps times contacts at the speed of a usual core, and once rows have ended, at
+theirs. Ctrl-C and SIGTERM stop the runs, each with a checkpoint. Logs are in runs/logs/NAME of the table. TABLE may
+also be the name of a study's table, elastoplastic-desk, which is written into yade_scripts/studies if it isn't there.
+Of yade-batch's columns !SCRIPT, !THREADS and !OMP_NUM_THREADS count.
 
 With --slurm each row that is left is one task, or short ones share one. A minute before its time limit a task writes
 its checkpoint and is queued again. --dry-run prints the scripts, and submits nothing.
@@ -117,24 +118,18 @@ def submit(study, at_once, sbatch, dry_run):
 
 
 def run(study, stop):
-    """Run all rows that are left; returns when all have come to an end, or stop.received."""
-    tried, screen, changed = set(), Screen(), None
+    """Run all rows that are left, and wait for those that others run; returns also when stop.received."""
+    tried, screen = set(), Screen()
     while not stop.received:
-        states = study.states(changed)
-        left = [
-            row
-            for row, state in zip(study.rows, states)
-            if state.kind not in (DONE, FAILED, RUNNING) and row.name not in tried
-        ]
-        elsewhere = {row.name for row, state in zip(study.rows, states) if state.kind == RUNNING}
+        states = study.states()
+        waiting = [row for row, state in zip(study.rows, states) if state.kind == WAITING]
+        left = [row for row in waiting if row.name not in tried]
         if left:
             tried |= {row.name for row in left}
             _run_batch(study, left, screen, stop)
-            changed = None
-        elif elsewhere:
-            screen.draw_if_due(lambda: study.text(live_table, elsewhere))
+        elif any(state.kind == RUNNING for state in states):
+            _draw(study, screen)
             _wait(stop)
-            changed = elsewhere
         else:
             break
     screen.close()
@@ -142,16 +137,17 @@ def run(study, stop):
 
 def _run_batch(study, left, screen, stop):
     with Batch(study.folder, left, study.jobs) as batch:
-        changed = set()
-        while (at_work := {row.name for row in batch.running()}) and not stop.received:
-            changed |= at_work
-            if screen.draw_if_due(lambda: study.text(live_table, changed)):
-                changed = at_work
+        while batch.running() and not stop.received:
+            _draw(study, screen)
             batch.wait(HEAR_SIGNALS)
         if stop.received:
             screen.close()
             print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
             batch.stop()
+
+
+def _draw(study, screen):
+    screen.draw_if_due(lambda: live_table(study.name, study.rows, study.states_with_queue()[0], study.jobs))
 
 
 def _wait(stop):
@@ -177,7 +173,7 @@ def close(study, stop):
     print(
         f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
         + (f", {len(states) - done - len(failures)} left" if stop.received else "")
-        + study.undecided()
+        + study.undecided(states)
     )
     if stop.received:
         return 128 + stop.received
@@ -194,7 +190,7 @@ def main(arguments):
         study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
-            print(study.drawn(full_table, states) + study.undecided(states))
+            print(full_table(study.name, study.rows, states, study.jobs) + study.undecided(states))
             return 0
         if not options.dry_run:
             study.folder.lock()
@@ -212,7 +208,7 @@ def main(arguments):
     for row in wrong:
         tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
-        study.announce(stop)
+        study.announce()
         run(study, stop)
     except OSError as error:  # yade is missing, the disk is full
         tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)

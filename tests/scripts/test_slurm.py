@@ -11,7 +11,6 @@ from running import PYTHON, TOP, study, wait_for
 
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm
-from yade_scripts.runner.cost import typical_seconds
 
 HEADER = "description radius velocity threads out\n"
 TABLE = HEADER + "a 5 10 1 runs/a\nb 5 11 2 runs/b\nc 5 12 1 runs/c\nrefused 5 -1 1 runs/d\n"
@@ -88,8 +87,8 @@ def test_arrays_are_no_larger_than_slurm_takes_them_and_short_rows_share_tasks()
     """A thousand tasks, and rows of one number of threads each; each row is in one of them."""
     row = lambda threads, radius: rows.StudyRow("", {}, "", KIND, KIND.parse(dict(threads=threads, radius=radius)))
     short, long, of_two = row(1, 10), row(1, 80), row(2, 80)
-    seconds = typical_seconds(short)
-    assert 0.5 < seconds < 5 < slurm.SHORT < typical_seconds(long)
+    seconds = short.expected_seconds
+    assert seconds < slurm.SHORT < of_two.expected_seconds
     found = slurm.arrays([short, long, of_two] * 1223 + [short] * 8777)
     assert [(group[0], len(group), tasks) for group, tasks in found] == [
         (long, 612, 612), (long, 611, 612),

@@ -45,7 +45,7 @@ def test_failures_fail_the_study_after_all_others_have_run_and_status_tells_it_m
     assert status == 1 and output.splitlines()[-1] == f"tiny: 4 rows, 1 done, 3 failed; 1 {UNDECIDED}"
     first = output.splitlines()[0]  # the estimate
     assert first.startswith("tiny: 4 rows, 1 failed, 3 to run; estimated time ")
-    assert "with 2 at once (measured: " in first
+    assert "with 2 at once, at 80 million contact updates" in first
     refused, killed, fails = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
     assert fails.startswith("study.py: fails: runs/tiny/fails: failed: JKRWadaEngine: the run broke down at t = ")
@@ -103,4 +103,4 @@ def test_a_full_disk_is_one_line(tmp_path):
         write_table(disk, "tiny.table", "ends")
         done = study(disk, "tiny.table", "-j", "1")
     assert done.returncode == 1
-    assert done.stderr == "study.py: runs/logs/tiny/speed.json: No space left on device\n"
+    assert done.stderr == "study.py: runs/logs/tiny: No space left on device\n"

@@ -15,8 +15,8 @@ from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import resuming, table
 from yade_scripts.run.parameters import gather
 from yade_scripts.run.report import closing_line, outcome_in
-from yade_scripts.runner import cost, rows
-from yade_scripts.runner.study import Screen, live_table
+from yade_scripts.runner import rows
+from yade_scripts.runner.study import Screen, live_table, time_left
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
@@ -69,8 +69,8 @@ def test_contact_updates_are_those_of_a_packing():
     """Contacts counted in a packing of A24's at R = 30, whose surface has fewer."""
     overlap = equilibrium_overlap(MATERIALS["ice"])
     counted = len(packings.contacts(packings.cpe(0.4, 30e-7, 1e-7, overlap, seed=1)))
-    given = row(radius=30, filling=0.4, duration=64.6 * 30 * TIME_UNIT)
-    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / (given.estimate.contacts * given.estimate.steps) < 1
+    estimate = KIND.estimate(parse({"radius": 30, "filling": 0.4, "duration": 64.6 * 30 * TIME_UNIT}))
+    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / (estimate.contacts * estimate.steps) < 1
 
 
 @pytest.mark.parametrize("cells", [{"radius": 25, "impact": 0.5}, {"packing": "bcca", "grains": 300}], ids=str)
@@ -84,37 +84,24 @@ def test_the_default_duration_is_estimated_without_packings(cells):
         if touch is not None:
             durations.append(default_duration(parameters, placed.radius, TIME_UNIT, touch))
     steps = np.mean(durations) / TIME_UNIT / 0.1
-    assert len(durations) >= 8 and row(**cells, endWhenApart=0).estimate.steps == pytest.approx(steps, rel=0.2)
+    assert len(durations) >= 8 and KIND.estimate(parse({**cells, "endWhenApart": 0})).steps == pytest.approx(
+        steps, rel=0.2
+    )
 
 
-def test_estimates_follow_ended_runs_and_the_measured_piece():
-    of = lambda radius, **cells: row(radius=radius, duration=64.6 * radius * TIME_UNIT, **cells)
-    small, large, fast = of(40), of(80), of(40, stepFraction=0.2)
-    typical = cost.typical_seconds(small)
-    assert cost.Cost().seconds(small) is None
-    known = cost.Cost(ended=[(small, 2 * typical)])
-    for wanted in (small, large, fast):
-        assert known.seconds(wanted) == pytest.approx(2 * cost.typical_seconds(wanted), rel=0.02)
-    assert known.seconds(of(40, engine="functors")) is None
-    assert 14 < cost.typical_seconds(large) / typical < 25 and typical > 1.5 * cost.typical_seconds(fast)
-    busier = cost.Cost(ended=100 * [(small, typical)] + 20 * [(small, 4 * typical)])
-    assert busier.seconds(small) == pytest.approx(3.25 * typical, rel=0.02)  # a machine that is busy since 20 runs
-    piece = cost.Piece(pace=3.0, setup=1.0, start=0.0)
-    assert cost.Cost(piece).seconds(small) == pytest.approx(3 * typical, rel=0.1)
-    assert cost.Cost(piece, [(small, typical)]).seconds(small) == pytest.approx(2 * typical, rel=0.1)
-
-
-MAKESPANS = [
-    ([], [], 2, 0), ([], [(5, 1), (1, 1), (1, 1)], 2, 5), ([(4, 1)], [(1, 1)] * 3, 2, 4),
-    ([(4, 1)] * 2, [(1, 1)], 2, 5),
-    ([], [(3, 1)] * 2, 1, 6), ([], [(3, 2), (3, 8), (1, 1), (1, 1)], 2, 7),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("running, waiting, at_once, expected", MAKESPANS)
-def test_makespan(running, waiting, at_once, expected):
-    """The numbers are (time, threads)."""
-    assert cost.makespan(running, waiting, at_once) == expected
+def test_expected_times_follow_the_rows_that_have_ended():
+    """Steps times contacts over the speed; threads at once share the work."""
+    small, large = row(radius=40), row(radius=80)
+    seconds, estimate = small.expected_seconds, KIND.estimate(small.parameters)
+    assert seconds == pytest.approx(estimate.steps * estimate.contacts / 80e6)
+    assert 14 < large.expected_seconds / seconds < 17
+    waiting, done = rows.State(rows.WAITING), rows.State(rows.DONE, 1.0, 2 * seconds)
+    assert time_left([small] * 2, [waiting] * 2, 2) == pytest.approx(seconds)
+    assert time_left([small] * 3, [waiting] * 3, 2) == pytest.approx(1.5 * seconds)
+    assert time_left([small, large], [done, waiting], 2) == pytest.approx(2 * large.expected_seconds)
+    assert time_left([small] * 2, [rows.State(rows.RUNNING, 0.5, left=7.0), done], 2) == 7.0
+    of_own_kind = rows.StudyRow("own", {}, "own.py", None, parse({}))
+    assert time_left([small, of_own_kind], [waiting, waiting], 2) is None
 
 
 def differences(wanted, run):
@@ -190,7 +177,7 @@ def test_the_outcome_is_read_back_from_the_closing_line(outcome):
 def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
     three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
     states = [rows.State(rows.RUNNING, 0.43, 60, 25.0), rows.State(rows.DONE, 1.0, 44.0)]
-    text = live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], cost.Cost(), 2)
+    text = live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], 2)
     assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
     assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
     terminal, file = Terminal(), StringIO()

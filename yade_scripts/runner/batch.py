@@ -1,26 +1,17 @@
-"""Processes that run the rows of a study, its folder for logs, and what is measured for the estimate."""
+"""Processes that run the rows of a study, and its folder for logs."""
 
 import fcntl
-import json
 import multiprocessing
 import os
 import signal
 import subprocess
-import time
 from contextlib import suppress
-from dataclasses import asdict
 from multiprocessing.connection import wait
 
-from analysis.runs.files import RunFolderError, json_text, read_json, write_file
-from analysis.runs.format import ENDED_FILE
-from analysis.runs.status import changed
-from yade_scripts.runner.cost import Cost, Piece, setup_seconds, step_seconds
-from yade_scripts.runner.rows import DONE, summary
+from yade_scripts.runner.rows import summary
 
 LOGS = os.path.join("runs", "logs")
-MEASURING, POLL = 300, 0.05  # s, at most; s between looks at it
-HERE = os.path.dirname(os.path.abspath(__file__))
-MEASURE, WORKER = os.path.join(HERE, "cost.py"), os.path.join(HERE, "worker.py")
+WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "worker.py")
 NICE = 10  # as yade-batch runs its jobs
 
 
@@ -29,12 +20,11 @@ class StudyBusy(RuntimeError):
 
 
 class StudyFolder:
-    """runs/logs/NAME: a log for each row, the measured speed."""
+    """runs/logs/NAME: a log for each row."""
 
     def __init__(self, name):
         self.path = os.path.join(LOGS, name)
         self.held = None
-        self._ends, self._cost, self._known = {}, None, None
 
     def file(self, name):
         return os.path.join(self.path, name)
@@ -59,70 +49,6 @@ class StudyFolder:
                 f"{self.path}: this study is being run by another process, or its last jobs still "
                 "are; must be one at a time (--status shows how far it is)"
             ) from None
-
-    def cost(self, rows, states):
-        """Cost from the rows that have ended, and from what was measured; the same one until there is more of
-        either."""
-        ended = [(row, s.seconds) for row, s in zip(rows, states) if row.kind and s.kind == DONE and s.seconds]
-        try:
-            piece = Piece(**{name: float(number) for name, number in read_json(self.file("speed.json")).items()})
-        except (RunFolderError, ValueError, TypeError, AttributeError):
-            piece = None
-        known = piece, [(row.out, seconds) for row, seconds in ended]
-        if known != self._known:
-            self._known, self._cost = known, Cost(piece, sorted(ended, key=self._end))
-        return self._cost
-
-    def _end(self, ended):
-        """When a row's run came to its end [s since 1970]: looked up once."""
-        out = ended[0].out
-        if out not in self._ends:
-            self._ends[out] = changed(os.path.join(out, ENDED_FILE))
-        return self._ends[out]
-
-    def measure(self, row, rows, states, at_once, stop):
-        """Time a piece of a row's run, at_once of them together, unless runs have ended to judge by."""
-        if row.kind is None or any(state.kind == DONE and state.seconds for state in states):
-            return
-        scene = [f"{name}={text}" for name, text in row.own_cells.items()]
-        command = ["yade", "-n", f"--nice={NICE}", "-x", MEASURE, row.script, *scene]
-        environment = {name: value for name, value in os.environ.items() if name != "YADE_BATCH"}
-        together, begun = max(1, at_once // row.threads), time.monotonic()
-        # In sessions of their own, as the runs: Linux shares processors out by session.
-        of_process = dict(stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=environment)
-        pieces = [subprocess.Popen(command, start_new_session=True, **of_process) for _ in range(together)]
-        try:
-            while (
-                None in [piece.poll() for piece in pieces]
-                and time.monotonic() < begun + MEASURING
-                and not stop.received
-            ):
-                time.sleep(POLL)
-            found = [json.loads(piece.stdout.read().splitlines()[-1]) for piece in pieces if piece.poll() == 0]
-        except (ValueError, IndexError):
-            found = []
-        finally:
-            for piece in pieces:
-                piece.kill()
-                piece.wait()
-        if len(found) < together:  # a row that fails says so when it is run
-            return
-        slowest = max(found, key=lambda piece: piece["step"])
-        setup, step = slowest["setup"], slowest["step"]
-        start = time.monotonic() - begun - setup - step * slowest["steps"]
-        piece = Piece(step / step_seconds(row), setup / setup_seconds(row), start)
-        write_file(self.file("speed.json"), json_text(asdict(piece)))
-
-    def basis(self, rows, states):
-        """What the estimate rests on, in words."""
-        cost = self.cost(rows, states)
-        if cost.ended:
-            return f"from {len(cost.ended)} runs that have ended"
-        return (
-            "nothing could be measured"
-            if cost.piece is None
-            else "measured: a piece of the first run, at the machine's present pace"
-        )
 
 
 class Batch:

@@ -18,7 +18,6 @@ from yade_scripts.run.kind import Kind
 from yade_scripts.run.parameters import RunParameters, file_name
 from yade_scripts.run.report import outcome_in
 from yade_scripts.run.resuming import difference
-from yade_scripts.runner.cost import setup_seconds, stepping_seconds
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.path.join(TOP, "yade_scripts")
@@ -26,6 +25,8 @@ KINDS = {"collide.py": collision.KIND, "compress.py": compression.KIND}  # of th
 DEFAULT_SCRIPT = os.path.join(SCRIPTS, "collide.py")
 THREADS = ("!THREADS", "!OMP_NUM_THREADS")
 OF_YADE_BATCH = ("!SCRIPT", *THREADS)  # its columns that have a meaning here, too
+SPEED = 80e6  # contact updates a second of the fused engine on one core, of docs/measurements.md
+SLOWER = 30  # the same engine's speed over that of YADE's own loop
 STOPPED = (128 + signal.SIGINT, 128 + signal.SIGTERM)  # exit statuses of a run that was stopped
 
 
@@ -65,14 +66,13 @@ class StudyRow:
         return {**self.own_cells, "out": self.out, "resume": 1}
 
     @cached_property
-    def estimate(self):
-        """run.kind.Estimate of its run; None for a kind of a user's own."""
-        return self.kind and self.kind.estimate(self.parameters)
-
-    @cached_property
-    def typical(self):
-        """(seconds of setting it up, seconds of its steps) of a usual processor."""
-        return setup_seconds(self), stepping_seconds(self)
+    def expected_seconds(self):
+        """Seconds that its run should take: steps times contacts at SPEED; None for a kind of a user's own."""
+        if self.kind is None:
+            return None
+        estimate = self.kind.estimate(self.parameters)
+        slower = SLOWER if self.parameters.engine == "functors" else 1
+        return slower * estimate.steps * estimate.contacts / SPEED / self.threads
 
 
 def read(path):
@@ -230,14 +230,6 @@ def _stopped(folder, run):
         return "", 0.0
     reached = rows[-1][0] / end_time(run) if len(rows) else 0.0
     return f"checkpoint at {100 * reached:.0f} %", reached
-
-
-def undecided(rows, states):
-    """'; 3 undecided (...)' of rows whose runs have ended with their outcome open, and so with a checkpoint; or ''."""
-    found = [row for row, state in zip(rows, states) if state.kind == DONE and checkpoint.exists(row.out)]
-    if not found:
-        return ""
-    return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
 
 
 # The log of a row's run: all that it printed, and how it ended, in the words of yade-batch.

@@ -34,7 +34,6 @@ from yade_scripts.run.parameters import file_name
 from yade_scripts.run.table import read
 from yade_scripts.runner import rows
 from yade_scripts.runner.batch import Worker
-from yade_scripts.runner.cost import typical_seconds
 from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
@@ -57,14 +56,15 @@ def arrays(left):
     found = []
     for (_, short), group in groupby(sorted(left, key=_uniform), key=_uniform):
         group = list(group)
-        tasks = ceil(sum(map(typical_seconds, group)) / TASK) if short else len(group)
+        tasks = ceil(sum(row.expected_seconds for row in group) / TASK) if short else len(group)
         number = ceil(tasks / LARGEST)
         found += [(group[k::number], ceil(tasks / number)) for k in range(number)]
     return found
 
 
 def _uniform(row):
-    return row.threads, typical_seconds(row) < SHORT
+    """(threads, whether it is short) of a row; one of unknown time is long."""
+    return row.threads, (row.expected_seconds or SHORT) < SHORT
 
 
 def job_script(study_folder, folder, group, tasks, at_once=None):

@@ -10,10 +10,10 @@ from pathlib import Path
 from analysis.printable import printable
 from analysis.report.status import counts, duration_text
 from analysis.report.status import line as run_line
+from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.batch import StudyFolder
-from yade_scripts.runner.cost import makespan
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
+from yade_scripts.runner.rows import DONE, FAILED, RUNNING, SPEED, WAITING
 
 LINES = 15  # of a live table
 EVERY = 1.0  # s
@@ -21,34 +21,31 @@ SHARE = 0.05  # of the time, at most, that goes into making texts
 
 
 class Study:
-    """The rows of a table, their states, and the estimate of what is left."""
+    """The rows of a table, their states, and the estimate of the time left."""
 
     def __init__(self, table, jobs):
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.table, self._text = table, _bytes_of(table)
         self.rows, self.jobs = rows.read(table), jobs
         self.folder = StudyFolder(self.name)
-        self._states = {}
+        self._states = [None] * len(self.rows)
 
     def forget_failures(self):
         """Remove the logs of rows that have failed and may be run again: these failures are none of this call."""
         failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
         self.folder.remove_logs(failed)
-        self._states = {}
 
-    def states(self, changed=None):
-        """[State of each row]; looked at only for the rows that may have `changed` (names; None: any) since they were
-        last."""
-        for row in self.rows:
-            before = self._states.get(row.name)
-            if before is None or before.kind != DONE and (changed is None or row.name in changed):
-                self._states[row.name] = rows.state(row, self.folder.log(row))
-        return [self._states[row.name] for row in self.rows]
+    def states(self):
+        """[State of each row] now; a row that is done stays so."""
+        for number, (row, before) in enumerate(zip(self.rows, self._states)):
+            if before is None or before.kind != DONE:
+                self._states[number] = rows.state(row, self.folder.log(row))
+        return list(self._states)
 
-    def states_with_queue(self, changed=None, sure=False):
+    def states_with_queue(self, sure=False):
         """states(), with a note where a row is a task of Slurm's queue; [whether it is one, ...]. sure: as
         slurm.queued() has it."""
-        states, queued = self.states(changed), slurm.queued(self.folder, sure)
+        states, queued = self.states(), slurm.queued(self.folder, sure)
         tasks = [None if row.error else queued.get((row.name, row.out)) for row in self.rows]
         for number, (state, task_of) in enumerate(zip(states, tasks)):
             if state.kind == WAITING and task_of:
@@ -57,43 +54,34 @@ class Study:
                 states[number] = replace(state, note=note)
         return states, list(map(bool, tasks))
 
-    def text(self, drawn_as, changed=None):
-        return self.drawn(drawn_as, self.states_with_queue(changed)[0])
-
-    def drawn(self, drawn_as, states):
-        """The same of rows in these states."""
-        return drawn_as(self.name, self.rows, states, self.folder.cost(self.rows, states), self.jobs)
-
-    def undecided(self, states=None):
-        """How many of the runs that have ended are undecided, in words; '' where none is."""
-        return rows.undecided(self.rows, self.states() if states is None else states)
+    def undecided(self, states):
+        """'; 3 undecided (...)' of runs that have ended with their outcome open, and so with a checkpoint; or ''."""
+        done = [row for row, state in zip(self.rows, states) if state.kind == DONE]
+        found = [row for row in done if checkpoint.exists(row.out)]
+        if not found:
+            return ""
+        return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
 
     def has_been_edited(self):
         """Whether the table is another one than that which was read."""
         return _bytes_of(self.table) != self._text
 
-    def left(self):
-        """Seconds until every row is done or has failed, or None."""
+    def announce(self):
+        """Print how much there is to do, and the estimate of the time."""
         states = self.states()
-        return total_left(states, self.folder.cost(self.rows, states), self.rows, self.jobs)
-
-    def announce(self, stop):
-        """Print how much there is to do, and the estimate; measures a piece of a run unless runs have ended."""
-        states = self.states()
-        left = [row for row, state in zip(self.rows, states) if state.kind not in (DONE, FAILED)]
+        left = [state for state in states if state.kind not in (DONE, FAILED)]
         if not left:
             return
-        screen = Screen()
-        screen.draw("a piece of the first run is timed, for the estimate")
-        self.folder.measure(left[0], self.rows, states, self.jobs, stop)
-        screen.close()
-        seconds = self.left()
-        again = sum(state.progress > 0 for state in states if state.kind not in (DONE, FAILED))
-        estimate = "unknown" if seconds is None else duration_text(seconds)
+        numbers = [(sum(state.kind == kind for state in states), kind) for kind in (DONE, FAILED)]
+        ended = "".join(f"{number} {kind}, " for number, kind in numbers if number)
+        resumed = sum(state.progress > 0 for state in left)
+        seconds = time_left(self.rows, states, self.jobs)
+        million = SPEED / slowness(self.rows, states) / 1e6
         print(
-            f'{printable(self.name)}: {len(self.rows)} rows, {_counted(states, DONE, FAILED)}{len(left)} to run'
-            f'{f", {again} of them from checkpoints" if again else ""}; estimated time {estimate} with '
-            f'{self.jobs} at once ({self.folder.basis(self.rows, states)})',
+            f"{printable(self.name)}: {len(self.rows)} rows, {ended}{len(left)} to run"
+            f"{f', {resumed} of them from checkpoints' if resumed else ''}; "
+            f"estimated time {'unknown' if seconds is None else duration_text(seconds)} with {self.jobs} at once, "
+            f"at {million:.3g} million contact updates a second a core",
             flush=True,
         )
 
@@ -106,74 +94,59 @@ def _bytes_of(path):
         return None
 
 
-def _counted(states, *kinds):
-    """'3 done, 1 failed, ', of those that there are."""
-    counts = [(sum(state.kind == kind for state in states), kind) for kind in kinds]
-    return "".join(f"{count} {kind}, " for count, kind in counts if count)
+def slowness(rows, states):
+    """The time that the rows which have ended took, over what was expected of them; 1 before one has."""
+    ended = [
+        (state.seconds, row.expected_seconds)
+        for row, state in zip(rows, states)
+        if state.kind == DONE and state.seconds and row.expected_seconds
+    ]
+    return sum(real for real, _ in ended) / sum(expected for _, expected in ended) if ended else 1.0
 
 
-def headline(name, states, cost, rows, at_once):
-    """One line: how many rows are done, running, waiting, failed, and the time left."""
-    return f"{printable(name)}: {counts(states)}{_left(total_left(states, cost, rows, at_once))}"
-
-
-def total_left(states, cost, rows, at_once):
-    """Seconds until every row is done or has failed, or None when no cost is known."""
-    left = {
-        kind: [(seconds_left(state, cost, row), row.threads) for state, row in zip(states, rows) if state.kind == kind]
-        for kind in (RUNNING, WAITING)
-    }
-    if any(time is None for time, _ in left[RUNNING] + left[WAITING]):
-        return None
-    start = cost.piece.start if cost.piece and left[WAITING] and not left[RUNNING] else 0.0
-    return start + makespan(left[RUNNING], left[WAITING], at_once)
-
-
-def seconds_left(state, cost, row):
-    """Of one row: by the estimate, and more and more by its own pace as it runs."""
+def seconds_left(row, state, slow):
+    """Of one row, by its own pace where it has one; None where nothing is known. slow: slowness()."""
     if state.kind not in (RUNNING, WAITING):
         return 0.0
-    estimate = cost.seconds(row)
-    if estimate is None:
+    if state.left is not None or row.expected_seconds is None:
         return state.left
-    by_estimate = estimate * (1 - state.progress)
-    if state.kind == WAITING:
-        return by_estimate
-    if state.left is None:
-        return max(0.0, by_estimate - (state.seconds or 0.0))
-    return state.progress * state.left + (1 - state.progress) * by_estimate
+    return slow * row.expected_seconds * (1 - state.progress)
 
 
-def line(row, state, cost):
-    """One row of the table."""
-    return run_line(row.name, state, seconds_left(state, cost, row))
+def time_left(rows, states, jobs):
+    """Seconds until every row has come to its end, with `jobs` threads at once and none of them idle; or None."""
+    slow = slowness(rows, states)
+    left = [seconds_left(row, state, slow) for row, state in zip(rows, states)]
+    if None in left:
+        return None
+    work = sum(seconds * min(row.threads, jobs) for row, seconds in zip(rows, left) if seconds)
+    return max(work / jobs, *left)
 
 
-def full_table(name, rows, states, cost, at_once):
+def headline(name, rows, states, jobs):
+    """One line: how many rows are done, running, waiting, failed, and the time left."""
+    left = time_left(rows, states, jobs)
+    return f"{printable(name)}: {counts(states)}" + ("" if left is None else f"; {duration_text(left)} left")
+
+
+def full_table(name, rows, states, jobs):
     """Every row, and the headline below."""
-    return "\n".join(
-        [line(row, state, cost) for row, state in zip(rows, states)] + [headline(name, states, cost, rows, at_once)]
-    )
+    slow = slowness(rows, states)
+    lines = [run_line(row.name, state, seconds_left(row, state, slow)) for row, state in zip(rows, states)]
+    return "\n".join([*lines, headline(name, rows, states, jobs)])
 
 
-def live_table(name, rows, states, cost, at_once):
-    """What runs, what failed, and what comes next, in no more than LINES lines, below the headline."""
-    order = (RUNNING, FAILED, WAITING)
-    chosen = sorted(
-        (pair for pair in zip(rows, states) if pair[1].kind in order), key=lambda pair: order.index(pair[1].kind)
-    )
-    more = [f"  and {len(chosen) - LINES} more: --status shows all"] if len(chosen) > LINES else []
-    return "\n".join(
-        [headline(name, states, cost, rows, at_once)] + [line(row, state, cost) for row, state in chosen[:LINES]] + more
-    )
-
-
-def _left(seconds):
-    return "" if seconds is None else f"; {duration_text(seconds)} left"
+def live_table(name, rows, states, jobs):
+    """The headline, and below it what runs, what failed, and what comes next, in at most LINES lines."""
+    order, slow = (RUNNING, FAILED, WAITING), slowness(rows, states)
+    shown = [(row, state) for kind in order for row, state in zip(rows, states) if state.kind == kind]
+    lines = [run_line(row.name, state, seconds_left(row, state, slow)) for row, state in shown[:LINES]]
+    more = [f"  and {len(shown) - LINES} more: --status shows all"] if len(shown) > LINES else []
+    return "\n".join([headline(name, rows, states, jobs), *lines, *more])
 
 
 class Screen:
-    """draw(text) replaces what was drawn before; nothing happens when the stream is no terminal (.shown)."""
+    """draw(text) replaces what was drawn before; nothing is drawn when the stream is no terminal (.shown)."""
 
     def __init__(self, stream=sys.stderr):
         self.stream, self.shown = stream, stream.isatty()
@@ -181,32 +154,25 @@ class Screen:
         self._next = 0.0
 
     def draw_if_due(self, text):
-        """draw(text()), unless that was done a moment ago; whether it was."""
+        """draw(text()), unless that was done a moment ago."""
         begun = time.monotonic()
-        if not self.shown or begun < self._next:
-            return False
-        self.draw(text())
-        took = time.monotonic() - begun
-        self._next = begun + max(EVERY, took / SHARE)
-        return True
+        if self.shown and begun >= self._next:
+            self.draw(text())
+            self._next = begun + max(EVERY, (time.monotonic() - begun) / SHARE)
 
     def draw(self, text):
         if not self.shown:
             return
         size = shutil.get_terminal_size()
         lines = [line[: size.columns - 1] for line in text.splitlines()[: size.lines - 1]]
-        self._erase()
+        self.close()
         self.stream.write("\n".join(lines) + "\n")
         self.stream.flush()
         self._lines = len(lines)
 
     def close(self):
         """Remove the drawing."""
-        if self.shown:
-            self._erase()
-            self.stream.flush()
-            self._lines = 0
-
-    def _erase(self):
         if self._lines:
             self.stream.write(f"\033[{self._lines}A\033[J")
+            self.stream.flush()
+            self._lines = 0

@@ -19,7 +19,7 @@ from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.run.parameters import CORES
-from yade_scripts.runner.study import SHARE, Study
+from yade_scripts.runner.study import SHARE, Study, time_left
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 STUDY = os.path.join(TOP, "study.py")
@@ -149,7 +149,7 @@ def _run(file, jobs):
             raise
         errors.seek(0)
         lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
-    undecided = of_table.undecided()
+    undecided = of_table.undecided(of_table.states())
     if undecided not in printed:
         print(f"{len(of_table.rows)} runs{undecided}")
     if study.returncode:
@@ -169,8 +169,9 @@ def _wait(process, output, study):
             if "\n" in text:
                 printed = text
                 shown.write(text.rstrip("\n"))
-            left = study.left()
+            states = study.states()
+            left = time_left(study.rows, states, study.jobs)
             shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
-            shown.update(sum(state.progress for state in study.states()) - shown.n)
+            shown.update(sum(state.progress for state in states) - shown.n)
             time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
     return printed
