@@ -5,14 +5,13 @@ table = read_outcomes("analysis/gallery/atlas/outcomes.txt")
 table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticking"]
 """
 
-import json
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from ..printable import suggested
-from ..runs.files import SUM, UNSUMMED, RunFolderError, require_own_sum, summed, write_file
+from ..runs.files import write_file
 from .rules import KINDS, OF_KIND
 
 PROBABILITIES, ERRORS = (tuple(f"{what}_{kind}" for kind in KINDS) for what in ("p", "error"))
@@ -26,7 +25,7 @@ SCALES = {"log10": np.log10, "linear": np.asarray}
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
 CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
-_SUMMED = f'# {{"{SUM}"'  # the first line of a file with a sum
+_SUM = '# {"sha256"'  # how files of versions 0.5 to 0.6 begin
 
 
 class OutcomeTableError(ValueError):
@@ -159,23 +158,15 @@ def _maxwell_weights(axis):
 
 
 def read_outcomes(path):
-    """OutcomeTable of a file; OutcomeTableError where it is none, or where its SHA-256 is not that of its first line.
-
-    Other programs' tables may do without a sum.
-    """
+    """OutcomeTable of a file; OutcomeTableError where it is none."""
     try:
         with open(path, encoding="ascii", errors="replace") as file:
             text = file.read()
     except OSError as error:
         advice = "must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
         raise OutcomeTableError(f"{path}: {error.strerror}; {advice}") from None
-    if text.startswith(_SUMMED):
-        try:
-            require_own_sum(path, text)
-        except RunFolderError as error:
-            raise OutcomeTableError(str(error)) from None
     lines = text.split("\n")
-    comments = tuple(line[1:].strip() for line in lines if line.startswith("#") and not line.startswith(_SUMMED))
+    comments = tuple(line[1:].strip() for line in lines if line.startswith("#") and not line.startswith(_SUM))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
         axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))
@@ -205,13 +196,12 @@ def _axis(words):
 def write_outcomes(path, table):
     """Write an OutcomeTable, so that Fortran's list-directed reads take it, but for the comments.
 
-    First a comment with the SHA-256 of the file, with zeros in its place, and the table's comments; then the number of
-    axes, a line an axis (name, number of nodes, scale, nodes), the number of columns, their names, and a row a node,
-    the last axis fastest.
+    First the table's comments; then the number of axes, a line an axis (name, number of nodes, scale, nodes), the
+    number of columns, their names, and a row a node, the last axis fastest.
     """
-    lines = [f"# {json.dumps(UNSUMMED)}", *(f"# {comment}".rstrip() for comment in table.comments)]
+    lines = [f"# {comment}".rstrip() for comment in table.comments]
     lines += [f"{len(table.axes)} number of axes: name, number of nodes, scale, nodes"]
     lines += [" ".join([a.name, str(len(a.nodes)), a.scale, *(f"{node:.9g}" for node in a.nodes)]) for a in table.axes]
     lines += [f"{len(table.columns)} number of columns", " ".join(table.columns)]
     lines += [" ".join(f"{value:.6g}" for value in row) for row in table.values.reshape(-1, len(table.columns))]
-    write_file(path, summed("\n".join(lines) + "\n"))
+    write_file(path, "\n".join(lines) + "\n")

@@ -7,8 +7,6 @@ from pathlib import Path
 from ..printable import printable
 from . import FAILED, RUNS, complain
 
-OF_STUDIES = ("runs.csv",)
-
 
 def add_parsers(commands):
     """Add the commands to argparse's subparsers."""
@@ -24,7 +22,7 @@ def add_parsers(commands):
     parser.set_defaults(command=status)
     parser = commands.add_parser(
         "verify",
-        help="compare runs that have ended, and tables of runs, with their sums",
+        help="compare runs that have ended with their sums",
         description="Read all files of each run and compare them with the SHA-256 that the run left of them; print "
         "what differs. `sha256sum -c ended` in a run folder does the same. Runs of versions before 0.5.0 have no sums.",
     )
@@ -74,19 +72,12 @@ def verify(options):
     """Exit status: 0, or 2 when something differs from its sum, a run has lost its sums, or no path holds a run."""
     from ..progress import line_beside_bars, progress
     from ..runs.collect import LOST, is_lost, run_folders
-    from ..runs.files import begins_with_sum
-    from ..runs.status import verify_run, verify_text
+    from ..runs.status import verify_run
 
-    texts = [
-        Path(path) for path in options.runs if Path(path).suffix in (".csv", ".json", ".txt") and Path(path).is_file()
-    ]
-    folders = [Path(path) for path in options.runs if Path(path).is_dir()]
-    places = [path for folder in folders for path in (folder, folder / "figures")]
-    texts += [file for place in places for name in OF_STUDIES if begins_with_sum(file := place / name)]
-    found, differs = run_folders([path for path in options.runs if Path(path) not in texts]), False
-    found += [(None, f"{folder}: {LOST}") for folder in folders if is_lost(folder)]
-    for path, problem in progress([*((text, None) for text in texts), *found], "verifying"):
-        problems, notes = ([problem], []) if problem else verify_text(path) if path in texts else verify_run(path)
+    found, differs = run_folders(options.runs), False
+    found += [(None, f"{path}: {LOST}") for path in map(Path, options.runs) if is_lost(path)]
+    for path, problem in progress(found, "verifying"):
+        problems, notes = ([problem], []) if problem else verify_run(path)
         differs |= bool(problems)
         for text in problems:
             complain(text)

@@ -22,12 +22,6 @@ from pathlib import Path
 import numpy as np
 
 _UNFINISHED = re.compile(r"\..+\.[0-9a-f]{8}\.unfinished(\.\w+)?")
-# A text that carries its own sum begins with a JSON object of which this is the first entry; summed() puts the sum in
-# the place of the zeros. Versions before 0.5.0 wrote tables of runs without one.
-SUM = "sha256"
-UNSUMMED = {SUM: "0" * 64}
-_OWN_SUM = re.compile(r'(?:# )?\{\s*"sha256": "([0-9a-f]{64})"')
-_WITHOUT_SUM = re.compile(r'(?:# )?\{\s*"study"')
 
 
 class RunFolderError(Exception):
@@ -250,32 +244,3 @@ def read_sums(file):
     if not all(len(line) == 2 and re.fullmatch("[0-9a-f]{64}", line[0]) for line in lines):
         raise RunFolderError(f"{file}: damaged: holds other lines than sums, as sha256sum prints them")
     return {name: digits for digits, name in lines}
-
-
-def summed(text):
-    """A text that begins with UNSUMMED, with its sum."""
-    return text.replace(UNSUMMED[SUM], hashlib.sha256(text.encode()).hexdigest(), 1)
-
-
-def read_summed(file):
-    """The text of a file that summed() has made, or of a table of a version before 0.5.0, without a sum."""
-    text = read_text(file)
-    if not _WITHOUT_SUM.match(text):
-        require_own_sum(file, text)
-    return text
-
-
-def require_own_sum(file, text):
-    """Raise RunFolderError where a file's text does not begin with its sum."""
-    found = _OWN_SUM.match(text)
-    if not found:
-        raise RunFolderError(f"{file}: not as `analysis study` has written it: must begin with its sum")
-    if summed(text[: found.start(1)] + UNSUMMED[SUM] + text[found.end(1) :]) != text:
-        raise RunFolderError(f"{file}: not as it was written: its SHA-256 is another than its first line says")
-
-
-def begins_with_sum(file):
-    """Whether there is such a file, and it begins as summed() makes it."""
-    with suppress(OSError), open(file, encoding="utf-8", errors="replace") as text:
-        return bool(_OWN_SUM.match(text.read(100)))
-    return False

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from .files import RunFolderError, begins_with_sum, is_unfinished, read_arrays, read_bytes, read_summed
+from .files import RunFolderError, is_unfinished, read_arrays, read_bytes
 from .folder import read_ended, read_record, state_files
 from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, LOCK_FILE, RUN_FILE
 from .lock import under_way
@@ -133,12 +133,6 @@ def verify_run(folder):
         more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
         said.append(f"also holds {', '.join(others[:NAMED])}{more}, which the run has not written")
     return problems, said
-
-
-def verify_text(file):
-    """The same of a table that carries its own sum, as a study's runs.csv."""
-    problems = _wrong(read_summed, file)
-    return problems, [] if problems else ["as it was written" if begins_with_sum(file) else NO_SUMS]
 
 
 def _wrong(check, *of):

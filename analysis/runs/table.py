@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas
 
 from ..printable import printable
-from .files import SUM, UNSUMMED, RunFolderError, read_summed, summed
+from .files import RunFolderError, read_text
 from .folder import open_run
 
 RUN, FOLDER = "run", "folder"
@@ -75,25 +75,25 @@ def run_folder(row):
 
 
 def table_text(table, columns, head):
-    """The CSV file (str) of a table, with its sum; head: a dict that JSON can hold."""
+    """The CSV file (str) of a table; head: a dict that JSON can hold."""
     out = io.StringIO()
-    lines = [json.dumps({**UNSUMMED, **head}, allow_nan=False), *columns_text(columns).splitlines()]
+    lines = [json.dumps(head, allow_nan=False), *columns_text(columns).splitlines()]
     out.writelines(f"# {line}\n" for line in lines)
     names = [RUN, *(column.name for column in columns)]
     table.to_csv(out, columns=names, index=False, quoting=csv.QUOTE_MINIMAL, lineterminator="\n")
-    return summed(out.getvalue())
+    return out.getvalue()
 
 
 def read_table(file, columns):
-    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns, or not as it was written."""
+    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns."""
     try:
-        lines = read_summed(file).split("\n")
+        lines = read_text(file).split("\n")
         comments = list(takewhile(lambda line: line.startswith("# "), lines))
         body = lines[len(comments) :]
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
-        head.pop(SUM, None)
+        head.pop("sha256", None)  # of versions 0.5 to 0.6, which put the text's sum there
         names = next(csv.reader(body), [])
         for name in names:
             if names.count(name) > 1:

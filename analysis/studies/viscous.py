@@ -255,7 +255,9 @@ def rows(runs):
     both = estimate(a_grain("formed", "broken"), none)
     yield A22("contacts broken a grain, no drag", broken, (None, 1), "below 1", "5.3")
     yield A22("contacts formed a grain, no drag", formed, (0.5, 2), "about 1: 0.5 to 2, chosen knowing ours", "5.3")
-    yield A22("contacts formed and broken a grain, no drag", both, (0.5, 2), "about 1: 0.5 to 2, chosen knowing ours", "5.2")
+    yield A22(
+        "contacts formed and broken a grain, no drag", both, (0.5, 2), "about 1: 0.5 to 2, chosen knowing ours", "5.2"
+    )
     lost = estimate(in_units("contacts"), none)
     yield A22("lost by contacts, no drag [N_tot F_c δ_c]", lost, (0.3, 3), "of order 1: 0.3 to 3", "5.2")
     stick = runs.groupby("viscoelasticTime").sticking_velocity.first()

@@ -83,14 +83,11 @@ def test_loss_by_erosion_is_the_mean_over_the_collisions_that_erode():
     ],
 )
 def test_wrong_tables_are_refused(table, tmp_path, change, says):
-    """By their sum, and those without one by what is wrong."""
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, table)
-    text = file.read_text().replace(*change, 1)
-    for content, expected in ((text, "SHA-256"), (text.partition("\n")[2], says)):
-        file.write_text(content)
-        with pytest.raises(OutcomeTableError, match=f"^{file}: .*{expected}"):
-            read_outcomes(file)
+    file.write_text(file.read_text().replace(*change, 1))
+    with pytest.raises(OutcomeTableError, match=f"^{file}: .*{says}"):
+        read_outcomes(file)
 
 
 PROGRAM = """program ask

@@ -11,7 +11,6 @@ import numpy as np
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
 from analysis.measures.plate import has_plate, with_plate
-from analysis.runs.files import SUM
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
 from analysis.runs.measured import outcome_of_run
@@ -28,7 +27,7 @@ from yade_scripts.packings.aggregate import (
     make,
     require_growable,
 )
-from yade_scripts.packings.files import sum_of_file
+from yade_scripts.packings.files import SUM, sum_of_file
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene

@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from analysis.runs.files import SUM, RunFolderError, npz, read_arrays, write_file
+from analysis.runs.files import RunFolderError, npz, read_arrays, write_file
 from analysis.runs.folder import read_quantities
 from analysis.runs.format import FORMAT, STATE
 from yade_scripts.packings.packing import (
@@ -26,6 +26,7 @@ from yade_scripts.packings.packing import (
     touching,
 )
 
+SUM = "sha256"  # of a packing, among its parameters
 SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
 OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
 DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
