@@ -165,4 +165,6 @@ def _compressed(scene):
     whole = log(parameters.finalFilling / first)
     progress = {name: log((filling or first) / first) / whole for name, filling in scene.moments.items()}
     duration, rate = whole * time_unit / (6 * parameters.strainRate), -2 * parameters.strainRate / time_unit
-    return Start(made.with_strain_rate(rate), duration, time_unit, compression._interval(parameters), progress)
+    together = min(compression.BETWEEN_SAMPLES, compression.FINEST_FILLING / (6 * parameters.strainRate))
+    together = max(1, round(together / parameters.stepFraction))  # between samples, as compress.py has it
+    return Start(made.with_strain_rate(rate), duration, time_unit, together, progress)

@@ -170,9 +170,10 @@ class Parameters:
         return cls(**values).filled_in()
 
     @classmethod
-    def help_text(cls):
-        """The parameters under the headings of their classes."""
-        columns, lines = dict(cls.columns()), []
+    def help_text(cls, without=()):
+        """The parameters but for some, under the headings of their classes."""
+        columns = {name: column for name, column in cls.columns().items() if name not in without}
+        lines = []
         for owner in cls.__mro__:
             own = [name for name in inspect.get_annotations(owner) if name in columns]
             if own:
