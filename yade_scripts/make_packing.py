@@ -5,8 +5,7 @@
     python3 yade_scripts/make_packing.py a.npz from=agg.xyz unit=um radius=0.1         of another program
     python3 yade_scripts/make_packing.py a.npz from=RUN/states/000059.npz radius=8     cut out of a compression
 
-The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py. Parameters that a
-packing doesn't depend on (density, criticalRolling, viscoelasticTime) are refused.
+The first file gets aggregate 0 of the seed, the second (if any) aggregate 1, as in collide.py.
 
 Other programs' aggregates may be npz, csv, xyz, extended xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, or
 text of DustCollider, FracVAL, PyFracVAL, aggregate_gen or YADE. Their contacts are brought to rest for the grains of
@@ -32,11 +31,9 @@ from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.from_run import CutParameters, cut, holds, read_periodic_state
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.packings.packing import description
-from yade_scripts.parameters import ParameterError, one_of, parameter, unknown
+from yade_scripts.parameters import ParameterError, one_of, parameter
 from yade_scripts.parameters.errors import one_line_errors
 from yade_scripts.run.parameters import from_arguments
-
-WITHOUT_EFFECT = ("density", "criticalRolling", "viscoelasticTime")
 
 
 @dataclass(frozen=True)
@@ -69,45 +66,32 @@ def _save_from(source, files, texts):
 
 
 def main(arguments):
-    if "--version" in arguments:
+    files = [argument for argument in arguments if "=" not in argument]
+    texts = from_arguments(argument for argument in arguments if "=" in argument)
+    options = [argument for argument in files if argument.startswith("-")]
+    if "--version" in options:
         print(f"make_packing.py {version_text()}")
         return 0
-    files = [argument for argument in arguments if "=" not in argument]
-    if "--help" in arguments:
+    if "--help" in options:
         print(
-            f"{__doc__}\n{MadeParameters.help_text((*WITHOUT_EFFECT, 'file'))}\n\nWith from=FILE of another program:\n"
-            f"{ImportParameters.help_text(WITHOUT_EFFECT)}\n\nWith from=RUN/states/NNNNNN.npz of a compression:\n"
+            f"{__doc__}\n{MadeParameters.help_text()}\n\nWith from=FILE of another program:\n"
+            f"{ImportParameters.help_text()}\n\nWith from=RUN/states/NNNNNN.npz of a compression:\n"
             f"{CutParameters.help_text()}"
         )
         return 0
-    options = [argument for argument in files if argument.startswith("-")]
     if options:
         raise ParameterError(f"{options[0]}: not understood; must be name=value, or --help")
-    if not 1 <= len(files) <= 2:
-        raise ParameterError(
-            f"{len(files)} files given; must be one or two to write, a.npz b.npz (names without =), or --help"
-        )
-    if len(set(map(os.path.realpath, files))) < len(files):
-        raise ParameterError(f"{files[1]}: given twice; must be two files, one for each aggregate")
-    texts = from_arguments(argument for argument in arguments if "=" in argument)
+    if not 1 <= len(set(map(os.path.realpath, files))) == len(files) <= 2:
+        raise ParameterError(f"{len(files)} files given; must be one or two to write, a.npz b.npz (names without =)")
     for file in files:
         if not file.endswith(".npz"):
             raise ParameterError(f"{file}: a packing is saved as .npz; must end in .npz")
         require_output(file, inputs=[texts["from"]] if "from" in texts else ())
         if os.path.exists(file) and not packings.is_packing(file):
             raise ParameterError(f"{file}: is there, and no packing; must be a new file, or a packing to replace")
-    for name in WITHOUT_EFFECT:
-        if name in texts:
-            raise ParameterError(f"{name}: a packing doesn't depend on it; must be left out")
     if "from" in texts:
-        if not texts["from"]:
-            raise ParameterError("from = : must be a file")
         _save_from(texts.pop("from"), files, texts)
         return 0
-    names = ["from", *(name for name in MadeParameters.columns() if name not in (*WITHOUT_EFFECT, "file"))]
-    for name in texts:
-        if name not in MadeParameters.columns():
-            raise unknown(name, names)
     parameters = MadeParameters.parse(texts)
     constants = materials.pair_constants(parameters)
     materials.require_small_contacts(constants)

@@ -55,9 +55,8 @@ MISTAKES = {
     "make_packing a.txt": "a.txt: a packing is saved as .npz",
     "make_packing a.npz filling=0.8": "must be at most 0.7519",
     "make_packing a.npz velocity=3": "velocity: unknown parameter",
-    "make_packing a.npz density=900": "density: a packing doesn't depend on it",
     "make_packing a.npz b.npz from=text.txt": "b.npz: from = text.txt is one aggregate",
-    "make_packing a.npz ./a.npz radius=3": "./a.npz: given twice",
+    "make_packing a.npz ./a.npz radius=3": "2 files given; must be one or two",
     "make_packing a.npz from=nowhere.xyz unit=um": "nowhere.xyz: No such file or directory",
     "make_packing nowhere/a.npz packing=bcca grains=10": "nowhere/a.npz: No such file or directory",
 }

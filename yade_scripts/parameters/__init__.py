@@ -22,12 +22,10 @@ class ParameterError(InputError, ValueError):
 class UnknownParameter(ParameterError):
     """A name that no parameter has."""
 
-
-def unknown(name, names):
-    """UnknownParameter for a name that isn't one of these."""
-    return UnknownParameter(
-        f"{_shortened(name)}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
-    )
+    def __init__(self, name, names):
+        super().__init__(
+            f"{_short(name)}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
+        )
 
 
 @dataclass(frozen=True)
@@ -103,12 +101,12 @@ class Column:
             return self.word
         value = _unquoted(text) if self.kind is str else self._number(text)
         if not self.check.accepts(value):
-            raise ParameterError(f"{self.name} = {_shortened(text)}: {self.must}")
+            raise ParameterError(f"{self.name} = {_short(text)}: {self.must}")
         return value
 
     def require_usual(self, value, meant):
         """Raise ParameterError where a number other than 0 lies outside of the usual range; with unusual=1 only where
-        it lies so far outside that the constants derived from it would not be numbers."""
+        constants derived from it would not be numbers."""
         if not self.usual or not value:
             return
         factor = MEANT if meant else 1.0
@@ -126,11 +124,10 @@ class Column:
         try:
             number = evaluate(_unquoted(text) if isinstance(text, str) else repr(text))
             converted = self.kind(number)
-        except (NotANumber, OverflowError) as problem:
-            reason = problem if isinstance(problem, NotANumber) else "not a finite number"
-            raise ParameterError(f"{self.name} = {_shortened(text)}: {reason}; {self.must}") from None
+        except (NotANumber, OverflowError):
+            raise ParameterError(f"{self.name} = {_short(text)}: not a finite number; {self.must}") from None
         if self.kind is int and number != converted:
-            raise ParameterError(f"{self.name} = {_shortened(text)}: not a whole number; {self.must}")
+            raise ParameterError(f"{self.name} = {_short(text)}: not a whole number; {self.must}")
         return converted
 
     def help(self):
@@ -163,23 +160,22 @@ class Parameters:
         columns, values = cls.columns(), {}
         for name, text in texts.items():
             if name not in columns:
-                raise unknown(name, columns)
+                raise UnknownParameter(name, columns)
             values[name] = columns[name].value(text)
         for name, value in values.items():
             columns[name].require_usual(value, values.get("unusual"))
         return cls(**values).filled_in()
 
     @classmethod
-    def help_text(cls, without=()):
-        """The parameters but for some, under the headings of their classes."""
-        columns = {name: column for name, column in cls.columns().items() if name not in without}
-        lines = []
+    def help_text(cls):
+        """The parameters under the headings of their classes."""
+        columns, lines = dict(cls.columns()), ["Parameters, as name=value or as columns of a table:"]
         for owner in cls.__mro__:
             own = [name for name in inspect.get_annotations(owner) if name in columns]
             if own:
                 lines += ["", owner.__doc__.splitlines()[0].rstrip(".") + ":"]
                 lines += [columns.pop(name).help() for name in own]
-        return "\n".join(["Parameters, as name=value or as columns of a table:"] + lines)
+        return "\n".join(lines)
 
     def filled_in(self):
         """The same with what follows from the parameters alone; raises ParameterError where they contradict."""
@@ -205,6 +201,6 @@ def _unquoted(text):
     return text[1:-1] if len(text) >= 2 and text[0] in "'\"" and text[-1] == text[0] else text
 
 
-def _shortened(text, longest=60):
+def _short(text, longest=60):
     text = " ".join(str(text).split())
     return text if len(text) <= longest else text[:longest] + "..."
