@@ -29,6 +29,8 @@ def test_number_of_grains_is_filling_times_the_cubed_radius(filling, relative_ra
     packing = ice(filling, relative_radius)
     assert packing.grains == grains == round(filling * relative_radius**3)
     assert packing.position.shape == (grains, 3) and np.all(packing.radius == RADIUS)
+    reach = relative_radius * RADIUS
+    assert reach - RADIUS < packings.extent(packing) <= reach * (1 + 1e-14)
 
 
 def of_parameters(seed, index):
@@ -42,13 +44,6 @@ def test_same_seed_and_index_same_aggregate(make_one):
     assert np.array_equal(one.position, again.position) and np.array_equal(one.radius, again.radius)
     for other in (dict(seed=6, index=0), dict(seed=5, index=1)):
         assert not np.allclose(one.position[1:], make_one(**other).position[1:])
-
-
-def test_all_centres_lie_in_the_sphere():
-    for seed in range(5):
-        distance = np.linalg.norm(ice(seed=seed).position, axis=1)
-        assert distance.max() <= 20 * RADIUS * (1 + 1e-14)
-        assert distance.max() > 19 * RADIUS
 
 
 def test_contacts_are_the_touching_pairs_which_overlap_by_the_equilibrium_overlap():
@@ -93,14 +88,11 @@ def test_mean_coordination_of_inner_grains(filling):
     assert abs(np.mean(means) - expected) < 3.9 * error
 
 
-def test_packings_apart_and_overlapping():
+def test_packings_that_overlap_or_do_not_fit_are_refused():
     first, second = ice(seed=1, relative_radius=8), ice(seed=1, index=1, relative_radius=8)
     packings.require_apart(first, packings.moved(second, (18 * RADIUS, 0, 0)))
-    with pytest.raises(packings.PackingError, match="overlap: [0-9]+ pairs of grains, by .* must be none"):
+    with refused(packings.PackingError, "overlap: "):
         packings.require_apart(first, packings.moved(second, (12 * RADIUS, 0, 0)))
-
-
-def test_filling_above_what_the_lattice_or_this_sphere_holds():
     with refused(packings.PackingError, "filling = 0.76: ", "at most 0.7519 (A24"):
         ice(filling=0.76)
     with refused(packings.PackingError, "takes 48 grains, but the lattice has"):

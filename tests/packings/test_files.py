@@ -45,15 +45,12 @@ def test_a_run_of_files_is_that_of_their_packings(files):
 UNLIKE = dict(packing="bpca", grains=40, sizes="two", sizeRatio=3, sizeFraction=0.2)
 
 
-def test_the_filling_of_a_run_is_of_its_grains_volume():
+def test_grains_of_unlike_size_in_a_run_and_a_file(tmp_path):
+    """The filling is of their volume; a file says how unlike they are."""
     found, _, _ = place(CollisionParameters.parse({**UNLIKE, "seed": 5}), OVERLAP)
     assert found.filling == pytest.approx((32 + 8 * 27) / found.radius**3, rel=1e-12)
-
-
-def test_a_packing_says_how_unlike_its_grains_are(tmp_path):
     packings.save(tmp_path / "a.npz", make(CollisionParameters.parse(UNLIKE), OVERLAP, 0))
     assert UNLIKE.items() <= packings.load(tmp_path / "a.npz").parameters.items()
-    assert "sizes" not in make(CollisionParameters.parse(dict(packing="bcca", grains=4)), OVERLAP, 0).parameters
 
 
 def write(path, position, radius, **parameters):
@@ -61,21 +58,11 @@ def write(path, position, radius, **parameters):
     return str(path)
 
 
-@pytest.mark.parametrize("content", [None, b"", b"not an archive"])
-def test_what_is_no_packing_gives_one_line(tmp_path, content):
-    path = tmp_path / "a.npz"
-    if content is not None:
-        path.write_bytes(content)
-    with refused(packings.PackingError, "not a packing", str(path)):
-        packings.load(path)
-
-
 @pytest.mark.parametrize(
     "position, radius, message",
     [
         (PAIR * (np.nan, 1, 1), [RADIUS] * 2, "'position' holds a value that is not finite"),
         (PAIR, [RADIUS, 0], "'radius' is 0 at index 1; must be > 0"),
-        (PAIR[:, :2], [RADIUS] * 2, "'position' has the shape (2, 2), expected (2, 3)"),
         (PAIR * 0.4, [RADIUS] * 2, "must be less than the smaller radius"),
         (PAIR[:1], [RADIUS], "N >= 2"),
         (PAIR * 0.99, [RADIUS] * 2, "must be at most 1.1 of the equilibrium"),
@@ -118,9 +105,9 @@ def test_grains_of_another_material_are_refused(tmp_path, material, names, messa
 
 
 def test_a_planar_run_takes_planar_packings_only(tmp_path):
-    path = write(tmp_path / "a.npz", PAIR @ np.array([[0, 0, 1], [0, 1, 0], [1, 0, 0]]), np.array([RADIUS] * 2))
+    path = write(tmp_path / "a.npz", PAIR[:, [2, 1, 0]], np.array([RADIUS] * 2))
     packing_from_file(path, RADIUS, OVERLAP, grains=ICE)  # whose material is not known
-    with pytest.raises(packings.PackingError, match="must all be in it with planar = 1"):
+    with pytest.raises(packings.PackingError, match="planar = 1"):
         packing_from_file(path, RADIUS, OVERLAP, planar=True)
 
 

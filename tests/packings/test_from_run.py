@@ -93,17 +93,6 @@ def test_command_line(run):
         assert f"{name}: {packing.grains} grains" in done.stdout
 
 
-def test_wrong_input_gives_one_line(run):
-    for arguments, message in {
-        "from=run/states/000020.npz radius=90": "radius = 90: a larger sphere than the cell holds; must be at most",
-        "from=run/states/none.npz radius=5": "run/states/none.npz: No such file or directory",
-        "from=run/states/000020.npz radius=5 filling=0.4": "filling: unknown parameter; must be one of radius, seed",
-    }.items():
-        done = make_packing(run, "x.npz", *arguments.split())
-        assert done.returncode != 0 and done.stderr.count("\n") == 1 and message in done.stderr
-    assert not (run / "x.npz").exists()
-
-
 @pytest.mark.in_yade
 def test_what_moves_when_a_cut_sphere_is_set_free(run):
     """Without any damping, over 2000 t0: no contact breaks or forms, and grains move by thousandths of a radius."""
