@@ -84,14 +84,12 @@ class GrainParameters(Parameters):
 
 
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
-    """Constants of a contact of two grains, where no YADE runs; a run takes them from the plugin, which a test
-    compares.
+    """Constants of a contact of two grains, where no YADE runs; a run takes them from the plugin, which a test compares.
 
     Parameters
     ----------
     grains : object
-        Anything with the attributes of Material, viscoelasticTime [s] if there is drag, and slidingStiffnessFactor
-        where it is not 1.
+        Anything with the attributes of Material; of viscoelasticTime [s] and slidingStiffnessFactor too.
     radii : (float, float), optional
         Of the two [m]; both grainRadius if left out.
     neck, linearDamping : float
@@ -100,8 +98,7 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     Returns
     -------
     dict
-        {name: value} by the plugin's names, SI (analysis.theory); with a neck, under "bond", those of a bond of two
-        grains of grainRadius.
+        {name: value} by the plugin's names, SI; with a neck, under "bond", those of a bond of two grains of grainRadius.
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]
@@ -115,12 +112,9 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
 
 
 def _by_plugins_names(constants):
-    return {_camel_case(name): value for name, value in vars(constants).items()}
-
-
-def _camel_case(name):
-    first, *others = name.split("_")
-    return first + "".join(word.capitalize() for word in others)
+    """{equilibriumOverlap: value} of an object with equilibrium_overlap."""
+    camel_case = lambda name: name[0] + name.title().replace("_", "")[1:]
+    return {camel_case(name): value for name, value in vars(constants).items()}
 
 
 def equilibrium_overlap(grains):

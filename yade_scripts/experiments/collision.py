@@ -192,12 +192,9 @@ def place(parameters, overlap):
 
     Returns
     -------
-    parameters : CollisionParameters
-        With radius, filling and grains of the larger aggregate where it is not a CPE one.
-    packings : list of Packing
-        Target and projectile, or the one that meets the plate.
-    velocities : list of (3,) array
-        [m/s]
+    (parameters, packings, velocities)
+        Parameters with radius, filling and grains of the larger aggregate where it is not a CPE one; target and
+        projectile, or the one that meets the plate; velocities (3,) [m/s].
     """
     if parameters.target == WALL:
         packing = make(parameters, overlap, 0)

@@ -154,24 +154,10 @@ def require_growable(packing, name, grains):
 
 
 def make(parameters, overlap, index):
-    """Aggregate number index of a run, around the origin.
+    """Aggregate number index of a run, around the origin; overlap: of touching grains of grainRadius [m].
 
-    Parameters
-    ----------
-    parameters : AggregateParameters
-    overlap : float
-        Of touching grains of grainRadius [m].
-    index : int
-
-    Returns
-    -------
-    Packing
-        Its parameters name the material, so that a run of other grains does not start with contacts out of
-        rest, and how unlike its grains are.
-
-    Raises
-    ------
-    PackingError
+    Its parameters name the material, so that a run of other grains does not start with contacts out of rest. Raises
+    PackingError.
     """
     p, planar = parameters, bool(parameters.planar)
     if p.packing == "file":

@@ -143,24 +143,11 @@ def _met(target, projectile, target_radii, projectile_radii, touching, stream, p
 
 
 def rbd(grains, grain_radius, overlap, overlap_with_plate, edge, seed):
-    """A layer by random ballistic deposition on the plate z = 0, as laboratories grow dust cakes (Blum & Schraepler
-    2004).
+    """A layer by random ballistic deposition on the plate z = 0, as laboratories grow dust cakes (Blum & Schraepler 2004).
 
     Grains come one by one straight down at random places of a square around the z axis that is periodic in x and y, and
-    stay where they first touch another grain or the plate. Grains across an edge are there once.
-
-    Parameters
-    ----------
-    grains : int
-    grain_radius, overlap, overlap_with_plate : float
-        Of a grain; of two at rest, and of one with the plate [m].
-    edge : float
-        Of the square [m].
-    seed : int
-
-    Returns
-    -------
-    Packing
+    stay where they first touch another grain or the plate. Grains across an edge are there once. overlap: of two at
+    rest; overlap_with_plate: of one with the plate; edge: of the square [m].
     """
     places = edge * (random_stream(seed, 0).random((grains, 2)) - 0.5)
     touching = 2 * grain_radius - overlap

@@ -77,27 +77,11 @@ def load(path):
 
 
 def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
-    """The packing in a file, with its centre of mass at the origin, if a run can start from it.
+    """The packing in a file, with its centre of mass at the origin and the sum of its grains among its parameters.
 
-    Parameters
-    ----------
-    path : str
-    grain_radius, overlap : float
-        Of the run's grains, and of two of them at rest [m].
-    planar : bool
-        Whether all grains must lie in the plane z = 0.
-    grains : object, optional
-        The run's grains: anything with the attributes OF_CONTACTS.
-
-    Returns
-    -------
-    Packing
-        With the sum of its grains among its parameters.
-
-    Raises
-    ------
-    PackingError
-        When it is no packing, is made of other grains, or grains overlap too deeply.
+    grain_radius, overlap: of the run's grains, and of two of them at rest [m]; planar: whether all grains must lie in
+    the plane z = 0; grains: of the run, anything with the attributes OF_CONTACTS. Raises PackingError when it is made
+    of other grains, or grains overlap too deeply.
     """
     packing = load(path)
     if packing.grains < 2:

@@ -32,28 +32,16 @@ class CutParameters(Parameters):
 
 @dataclass(frozen=True)
 class PeriodicState:
-    """A state of a compression; lengths in m, SI.
+    """A state of a compression; SI."""
 
-    Attributes
-    ----------
-    position, radius, contact_pairs, cell_size : array
-        (N, 3), (N,), (M, 2), (3,).
-    overlap : float
-        Of two grains at rest.
-    material : dict
-        Values of OF_CONTACTS, as far as they are known.
-    axis, walls
-        Between walls: their axis and places (2,).
-    """
-
-    position: np.ndarray
-    radius: np.ndarray
-    contact_pairs: np.ndarray
-    cell_size: np.ndarray
-    overlap: float
-    material: dict = field(default_factory=dict)
-    axis: int | None = None
-    walls: np.ndarray | None = None
+    position: np.ndarray  # (N, 3)
+    radius: np.ndarray  # (N,)
+    contact_pairs: np.ndarray  # (M, 2)
+    cell_size: np.ndarray  # (3,)
+    overlap: float  # of two grains at rest
+    material: dict = field(default_factory=dict)  # values of OF_CONTACTS, as far as they are known
+    axis: int | None = None  # between walls: across them
+    walls: np.ndarray | None = None  # (2,), their places
 
 
 def holds(path, name):
@@ -91,25 +79,10 @@ def read_periodic_state(path):
 
 
 def cut(state, parameters, index=0):
-    """A sphere cut out of a state of a compression, around the origin.
+    """A sphere cut out of a PeriodicState, around the origin; index: of the aggregate, places and orientations differ.
 
     Its centre is random in the cell; grains whose centre lies outside are dropped, and those that are then no longer
-    connected with the most; a random orientation.
-
-    Parameters
-    ----------
-    state : PeriodicState
-    parameters : CutParameters
-    index : int
-        Of the aggregate: places and orientations differ.
-
-    Returns
-    -------
-    Packing
-
-    Raises
-    ------
-    ParameterError, PackingError
+    connected with the most; a random orientation. Raises ParameterError and PackingError.
     """
     grain_radius = float(state.radius.max())
     if parameters.radius is None:

@@ -65,24 +65,10 @@ class ImportParameters(GrainParameters):
 
 
 def imported(path, texts):
-    """The aggregate of another program, its contacts at rest.
+    """(Packing, lines about it) of another program's aggregate, around the origin, its contacts at rest.
 
-    Parameters
-    ----------
-    path : str
-    texts : dict
-        {name: text} of ImportParameters. Grains are of the file's material, unless one is given.
-
-    Returns
-    -------
-    packing : Packing
-        Around the origin.
-    lines : list of str
-        What was read, and how far grains were moved.
-
-    Raises
-    ------
-    ParameterError, PackingError
+    texts: {name: text} of ImportParameters. Grains are of the file's material, unless one is given. The lines tell what
+    was read, and how far grains were moved. Raises ParameterError and PackingError.
     """
     parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))

@@ -13,8 +13,7 @@ IMAGE_GAP = 0.1  # grain radii between a packing and its images in the smallest 
 def first_touch(first, second, velocity):
     """Time [s] until two grains touch when `second` moves by velocity (3,) [m/s] against `first`; None if never.
 
-    Both keep their shapes, and must be apart at the start; two grains touch when their distance falls to the sum of
-    their radii.
+    Both keep their shapes, and must be apart at the start.
     """
     speed = np.linalg.norm(velocity)
     along = np.asarray(velocity) / speed
@@ -56,7 +55,7 @@ def _encounter(first, second, along, reach):
 
 
 def offset_pair(target, projectile, velocity, impact):
-    """Two aggregates of any shape on their way to each other, in the frame of their common centre of mass (A22 2.4).
+    """Two aggregates on their way to each other, in the frame of their common centre of mass (A22 section 2.4).
 
     A22 doesn't say how far apart its aggregates start: here so that they first touch after START_GAP; those that pass
     each other start where the spheres around them touch in x.
@@ -72,10 +71,8 @@ def offset_pair(target, projectile, velocity, impact):
 
     Returns
     -------
-    packings : list of Packing
-        Target and projectile in their places.
-    velocities : list of (3,) array
-        [m/s]
+    (packings, velocities)
+        Of target and projectile, in their places; velocities (3,) [m/s].
     """
     mass = np.array([(packing.radius**3).sum() for packing in (target, projectile)])
     largest = max(target.radius.max(), projectile.radius.max())

@@ -37,20 +37,9 @@ class Rest:
 
 
 def at_rest(position, radius, pairs, grain_radius, overlap):
-    """Bring contacts to rest.
+    """Bring the contacts of pairs (M, 2) to rest; grains that come to overlap on the way are contacts too.
 
-    Parameters
-    ----------
-    position : (N, 3) array
-    radius : (N,) array
-    pairs : (M, 2) array
-        Grains that touch; those that come to overlap on the way are contacts too.
-    grain_radius, overlap : float
-        The overlap at rest is that of two grains of this radius. All lengths in m.
-
-    Returns
-    -------
-    Rest
+    position (N, 3), radius (N,); the overlap at rest is that of two grains of grain_radius. All lengths in m.
     """
     moved = position.copy()
     for move in progress(range(MOST_MOVES + 1), "bringing contacts to rest", MOST_MOVES + 1):
@@ -67,13 +56,8 @@ def at_rest(position, radius, pairs, grain_radius, overlap):
 
 
 def unpressed(position, radius, pairs, grain_radius, overlap):
-    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest().
-
-    Raises
-    ------
-    PackingError
-        Where not all can be at rest, and one stays deeper than DEEPEST or comes apart.
-    """
+    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest(). Raises PackingError
+    where one stays deeper than DEEPEST or comes apart."""
     rest = at_rest(position, radius, pairs, grain_radius, overlap)
     if rest.deviation.min() > -1.0 and rest.deviation.max() < DEEPEST - 1:
         return rest.position
