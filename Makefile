@@ -239,7 +239,7 @@ test-newest:
 	@build/newest/bin/python -m pytest -q -p no:cacheprovider tests/analysis
 
 test-dustpy: build/dustpy/installed
-	@build/dustpy/bin/python -m pytest -q -p no:cacheprovider tests/analysis/test_coagulation.py tests/analysis/test_in_dustpy.py
+	@build/dustpy/bin/python -m pytest -q -p no:cacheprovider tests/analysis/test_coagulation.py
 disk: build/dustpy/installed
 	@build/dustpy/bin/python -m analysis.atlas.adapters.disk analysis/gallery/atlas
 

@@ -38,5 +38,5 @@ def own(tmp_path):
     for seed, sticks in ((1, True), (2, False), (3, True), (4, True)):
         two_pairs(tmp_path / "runs" / f"s{seed}", 3.0, seed, sticks)
     two_pairs(tmp_path / "runs" / "open", 40.0, 1, settles=False)
-    two_pairs(tmp_path / "runs" / "late", 3.0, 5, ended=False)
+    two_pairs(tmp_path / "runs" / "late", 3.0, 5, how={"ended": False})
     return tmp_path

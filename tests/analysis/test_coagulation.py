@@ -1,13 +1,26 @@
-"""The atlas's tables of outcomes in Python and Fortran."""
+"""The atlas's tables of outcomes in Python, in Fortran and in DustPy."""
 
 import shutil
 import subprocess
+import warnings
+from math import pi
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from analysis.atlas.outcome_table import Axis, OutcomeTable, OutcomeTableError, read_outcomes, write_outcomes
+from analysis.atlas.adapters.dustpy import fragments_of, use_atlas
+from analysis.atlas.outcome_table import (
+    PROBABILITIES,
+    Axis,
+    OutcomeTable,
+    OutcomeTableError,
+    read_outcomes,
+    write_outcomes,
+)
+from analysis.atlas.query import outcomes_file
+from analysis.atlas.variables import GROWN
+from analysis.theory import ICE, interaction_energies, pair_constants
 
 ROOT = Path(__file__).parents[2]
 READER = ROOT / "analysis/atlas/adapters/dust_outcomes.f90"
@@ -51,42 +64,26 @@ def test_lookup_is_multilinear_and_beyond_the_edges_constant(table, tmp_path):
     assert 0 < np.mean(beyond["inside"] == 0) < 1
 
 
-FINE = Axis("velocity", "log10", np.geomspace(0.01, 100, 400))
-
-
-def test_maxwell_of_a_threshold_has_its_closed_form():
-    """Collisions above a speed between two nodes, to the distance of the nodes."""
-    step = np.broadcast_to((FINE.nodes > 3)[:, None, None, None, None], (400, 3, 3, 4, 1)).astype(float)
-    rms = OutcomeTable((FINE, *AXES[1:]), ("inside",), step).maxwell()
-    with pytest.raises(OutcomeTableError, match="must be one of single speeds"):
-        rms.maxwell()
-    d = (3 / FINE.nodes) ** 2
-    np.testing.assert_allclose(rms.values[:350, 0, 0, 0, 0], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
-
-
-def test_loss_by_erosion_is_the_mean_over_the_collisions_that_erode():
-    """Erosion above one speed takes 3; what the table has below counts for nothing."""
-    erodes = FINE.nodes > 3
+def test_maxwell_of_a_threshold_has_its_closed_form_and_loss_is_that_of_the_collisions_that_erode():
+    """Erosion above a speed between two nodes, to the distance of the nodes, takes 3; what the table has below counts
+    for nothing."""
+    speeds = np.geomspace(0.01, 100, 400)
+    erodes = speeds > 3
     columns = np.stack([erodes, np.where(erodes, 3.0, 0.5), np.ones(400)], -1)
     step = np.broadcast_to(columns[:, None, None, None], (400, 3, 3, 4, 3))
-    rms = OutcomeTable((FINE, *AXES[1:]), ("p_erosion", "loss_erosion", "inside"), step).maxwell()
+    fine = (Axis("velocity", "log10", speeds), *AXES[1:])
+    rms = OutcomeTable(fine, ("p_erosion", "loss_erosion", "inside"), step).maxwell()
     often, loss = np.moveaxis(rms.values[:, 0, 0, 0, :2], -1, 0)
+    d = (3 / speeds) ** 2
+    np.testing.assert_allclose(often[:350], ((1.5 * d + 1) * np.exp(-1.5 * d))[:350], atol=0.02)
     assert loss[often > 1e-9] == pytest.approx(3.0) and loss[often == 0] == pytest.approx(0.5)
 
 
-@pytest.mark.parametrize(
-    "change, says",
-    [
-        (("log10 0.1", "log10 0.9"), "increasing"),
-        (("4 number of columns", "5 number of columns"), "columns; must be 5"),
-        (("inside", "outside"), "must have a column `inside`"),
-    ],
-)
-def test_wrong_tables_are_refused(table, tmp_path, change, says):
+def test_wrong_tables_are_refused(table, tmp_path):
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, table)
-    file.write_text(file.read_text().replace(*change, 1))
-    with pytest.raises(OutcomeTableError, match=f"^{file}: .*{says}"):
+    file.write_text(file.read_text().replace("log10 0.1", "log10 0.9", 1))
+    with pytest.raises(OutcomeTableError, match=f"^{file}: .*increasing"):
         read_outcomes(file)
 
 
@@ -104,39 +101,7 @@ PROGRAM = """program ask
    end do
 end program
 """
-needs_gfortran = pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
-
-
-def compiled(folder, table, program, *flags):
-    """The program with the reader, and the table beside it."""
-    write_outcomes(folder / "outcomes.txt", table)
-    (folder / "ask.f90").write_text(program)
-    subprocess.run(["gfortran", *flags, READER, "ask.f90", "-o", "ask"], cwd=folder, check=True)
-    return folder / "ask"
-
-
-@needs_gfortran
-@pytest.mark.parametrize("flag", ["-O2", "-fdefault-real-8"])  # mcdust compiles with the second
-def test_fortran_answers_as_python_does(table, tmp_path, flag):
-    ask = compiled(tmp_path, table, PROGRAM, flag, "-Wall", "-fcheck=all")
-    query = queries(2000, 2.0)
-    lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(query.values())).tolist())
-    answer = subprocess.run([ask], input=lines, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
-    theirs = np.array(answer.split(), dtype=float).reshape(-1, 5)
-    ours = read_outcomes(tmp_path / "outcomes.txt").lookup(**query)
-    values = np.column_stack([*ours.values(), ours["inside"]])
-    assert theirs[:, [0, 1, 2, 4]] == pytest.approx(values[:, [0, 1, 2, 4]], rel=1e-12, abs=1e-12)
-
-
-@needs_gfortran
-@pytest.mark.parametrize("query", ["-1 100 0.5 0.2", "nan 100 0.5 0.2"])
-def test_fortran_stops_at_a_query_that_is_none(table, tmp_path, query):
-    ask = compiled(tmp_path, table, PROGRAM)
-    done = subprocess.run([ask], input=f"{query}\n", cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode and "query must be 0 or more" in done.stderr
-
-
-# What mcdust has of its own around the example of README.md: names and kinds.
+# What mcdust has of its own around the example of the adapters' README.md: names and kinds.
 MCDUST = """module collisions
    use dust_outcomes, only: dp, look_up, column
    type :: swarm
@@ -154,8 +119,141 @@ end module
 """
 
 
-@needs_gfortran
-def test_the_example_for_mcdust_compiles(tmp_path):
+@pytest.mark.skipif(not shutil.which("gfortran"), reason="gfortran is not installed")
+def test_fortran_answers_as_python_does_and_the_example_for_mcdust_compiles(table, tmp_path):
+    """With mcdust's flag; a query that is none ends the program."""
+    write_outcomes(tmp_path / "outcomes.txt", table)
     page = (ROOT / "analysis/atlas/adapters/README.md").read_text()
     (tmp_path / "collisions.f90").write_text(MCDUST.format(page.partition("```fortran\n")[2].partition("```")[0]))
-    subprocess.run(["gfortran", "-fdefault-real-8", "-c", READER, "collisions.f90"], cwd=tmp_path, check=True)
+    (tmp_path / "ask.f90").write_text(PROGRAM)
+    fortran = ["gfortran", "-fdefault-real-8", "-fcheck=all", READER]
+    subprocess.run([*fortran, "-c", "collisions.f90"], cwd=tmp_path, check=True)
+    subprocess.run([*fortran, "ask.f90", "-o", "ask"], cwd=tmp_path, check=True)
+    ask = lambda lines: subprocess.run([tmp_path / "ask"], input=lines, cwd=tmp_path, capture_output=True, text=True)
+    query = queries(2000, 2.0)
+    lines = "\n".join(" ".join(map(repr, row)) for row in np.column_stack(list(query.values())).tolist())
+    theirs = np.array(ask(lines).stdout.split(), dtype=float).reshape(-1, 5)
+    ours = read_outcomes(tmp_path / "outcomes.txt").lookup(**query)
+    values = np.column_stack([*ours.values(), ours["inside"]])
+    assert theirs[:, [0, 1, 2, 4]] == pytest.approx(values[:, [0, 1, 2, 4]], rel=1e-12, abs=1e-12)
+    for wrong in ("-1 100 0.5 0.2\n", "nan 100 0.5 0.2\n"):
+        assert "query must be 0 or more" in ask(wrong).stderr
+
+
+# ---- DustPy, with tables of which the answer is known (make test-dustpy) ----
+
+
+BREAK = interaction_energies(pair_constants(ICE, 1e-7))["break"]
+
+
+@pytest.fixture
+def sim():
+    """Five radial cells of ice grains with a filling of 0.3, masses of two grains to a milligram."""
+    dustpy = pytest.importorskip("dustpy", reason="DustPy is not installed; make test-dustpy has it")
+    sim = dustpy.Simulation(verbosity=0)
+    sim.ini.grid.Nr, sim.ini.grid.rmin, sim.ini.grid.rmax = 5, 5 * dustpy.constants.au, 60 * dustpy.constants.au
+    sim.ini.grid.mmin, sim.ini.grid.mmax, sim.ini.dust.rhoMonomer = 1e-14, 1e-3, 1.0
+    sim.initialize()
+    sim.writer = None
+    sim.dust.fill[...] = 0.3
+    sim.update()
+    return sim
+
+
+def table_of(probabilities, speeds=20, inside=1.0, touching=1.0):
+    """OutcomeTable of probabilities(v, n, q, f) of PROBABILITIES; v is over v_break."""
+    axes = (
+        Axis("velocity", "log10", 0.01 * 1e4 ** np.linspace(0, 1, speeds) ** 1.5),
+        Axis("grains", "log10", np.array([60.0, 500.0, 4000.0])),
+        Axis("mass_ratio", "log10", np.array([0.02, 0.2, 1.0])),
+        Axis("filling", "linear", np.array([0.05, 0.3, 0.5])),
+    )
+    grid = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
+    columns = dict(zip(PROBABILITIES, probabilities(*grid)))
+    columns |= {"p_touching": touching, "gain_mass_transfer": 0.4, "loss_erosion": 1.0, "largest_fragmentation": 0.3}
+    columns |= {"fragment_index": 2.0, "inside": inside}
+    values = np.stack(np.broadcast_arrays(*columns.values(), grid[0])[:-1], -1)
+    return OutcomeTable(axes, tuple(columns), values)
+
+
+def smooth(v, n, q, f):
+    breaks = v / (v + 10) * (1 - 0.3 * q)
+    bounces = (1 - breaks) * f * np.log10(n) / 8
+    return 1 - breaks - bounces, bounces, 0.5 * breaks, 0.3 * breaks, 0.2 * breaks
+
+
+def test_a_threshold_gives_dustpys_own_probabilities(sim):
+    """All stick below 1 m/s and break above: what DustPy has by default, but for the distance of the table's speeds."""
+    threshold = 1.0 / np.sqrt(BREAK / (4 / 3 * pi * 1e-21 * 1000))
+    own = np.array(sim.dust.p.frag), np.array(sim.dust.p.stick)
+    use_atlas(sim, table_of(lambda v, *_: (v < threshold, 0, 0, 0, v >= threshold), speeds=1001))
+    assert own[0][1:-1].min() < 1e-9 and own[0].max() > 0.5
+    np.testing.assert_allclose(sim.dust.p.frag, own[0], atol=0.01)
+    np.testing.assert_allclose(sim.dust.p.stick, own[1], atol=0.01)
+
+
+def test_probabilities_are_those_of_the_table_at_each_radius_s_filling(sim):
+    sim.dust.fill[...] = np.linspace(0.1, 0.4, 5)[:, None]
+    sim.update()
+    table = table_of(smooth, touching=0.8)
+    use_atlas(sim, table, speeds="rms")
+    frag, stick = np.asarray(sim.dust.p.frag), np.asarray(sim.dust.p.stick)
+    grain = 4 / 3 * pi * 1e-21 * 1000  # kg
+    mass = np.asarray(sim.grid.m) * 1e-3
+    larger, smaller = np.maximum.outer(mass, mass), np.minimum.outer(mass, mass)
+    for r in range(1, 4):
+        found = table.lookup(
+            velocity=np.asarray(sim.dust.v.rel.tot)[r] / 100 / np.sqrt(BREAK / grain),
+            grains=larger / grain,
+            mass_ratio=smaller / larger,
+            filling=float(np.asarray(sim.dust.fill)[r, 0]),
+        )
+        transfer = found["p_mass_transfer"]
+        np.testing.assert_allclose(stick[r], 0.8 * (found["p_sticking"] + 0.7 * transfer), atol=1e-9)
+        np.testing.assert_allclose(1 - stick[r] - frag[r], 0.8 * found["p_bouncing"] + 0.2, atol=1e-9)
+    for p in (frag, stick):
+        assert not p[[0, -1]].any() and np.array_equal(p, p.swapaxes(1, 2)) and p.min() >= 0
+    assert (frag + stick).max() <= 1
+
+
+@pytest.mark.parametrize("inside", [0.0, 1.0])
+def test_outside_of_the_data_dustpy_decides(sim, inside):
+    own = np.array(sim.dust.p.frag), np.array(sim.dust.p.stick)
+    atlas = use_atlas(sim, table_of(smooth, inside=inside), outside="dustpy", speeds="rms")
+    query = atlas._query(sim)
+    within = inside * np.all([axis.beyond(query[axis.name]) == 0 for axis in atlas.table.axes], axis=0)
+    frag, stick = (np.asarray(p)[1:-1, atlas.smaller, atlas.larger] for p in (sim.dust.p.frag, sim.dust.p.stick))
+    for p, theirs in zip((frag, stick), own):
+        same = np.isclose(p, theirs[1:-1, atlas.smaller, atlas.larger], atol=1e-12)
+        assert same[within == 0].all() and (not inside or not same[within == 1].any())
+    report = atlas.report(sim)
+    assert report["collisions"] == pytest.approx(1 - np.average(within, weights=atlas.outside(sim)[0]))
+    assert report["stick"] + report["frag"] + report["bounce"] == pytest.approx(1)
+
+
+def test_mass_is_conserved(sim):
+    """Where nothing drifts and diffuses, each radial cell keeps its mass."""
+    use_atlas(sim, table_of(smooth), fragment_index=True)
+    for field in (sim.dust.v.rad, sim.dust.D):
+        field[...] = 0.0
+        field.updater = None
+    before = np.asarray(sim.dust.Sigma)[1:-1].copy()
+    sim.t.snapshots = np.array([100.0]) * 3.15576e7  # years
+    sim.run()
+    after = np.asarray(sim.dust.Sigma)[1:-1]
+    assert np.abs((after - before) / before.sum(axis=1, keepdims=True)).max() > 1e-3
+    np.testing.assert_allclose(after.sum(axis=1), before.sum(axis=1), rtol=1e-10)
+
+
+def test_fragments_of_dustpys_index_are_dustpys(sim):
+    np.testing.assert_allclose(fragments_of(sim.grid.m, 11 / 6), sim.dust.coagulation.phi, rtol=1e-12)
+
+
+@pytest.mark.parametrize("options", [{}, {"grain_radius": 1e-5}])
+def test_grains_of_another_size_than_meant_give_a_warning(sim, options):
+    """Of 1e-5, 0.1 um in cm, all aggregates of the start would be less than one grain."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        use_atlas(sim, outcomes_file(GROWN, averaged=True), **options)
+    lines = [str(each.message) for each in caught if "use_atlas" in str(each.message)]
+    assert len(lines) == bool(options) and all("of the collisions are at present outside" in line for line in lines)

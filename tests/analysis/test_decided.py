@@ -56,7 +56,6 @@ APART = np.repeat([-1.0, 1.0], 10)
         ("sticking", chain(parting(20, 1.1, 10)), LONG, "parts of 50% of the mass"),
         ("sticking", chain(parting(20, 1.1, 10), bonded=True), LONG, None),
         ("sticking", chain(parting(20, 1.1, 4)), LONG, "parts of 20% of the mass"),  # within an aggregate
-        ("sticking", chain(parting(20, 1.1, 2)), LONG, None),  # a tenth less is sticking too
         ("sticking", chain(parting(20, 1.1, 2), small=2), LONG, "parts of 10% of the mass"),  # the projectile
         ("bouncing", chain(np.repeat([-1.0, 1.0], [2, 18]), [1], small=2), LONG, None),
         ("bouncing", chain(APART, [9]), LONG, None),
@@ -69,7 +68,7 @@ APART = np.repeat([-1.0, 1.0], 10)
         ("never met", chain(-APART, [9]), 0.0, "the aggregates may still meet"),
     ],
 )
-def test_chains(kind, state, since_touch, reason):
+def test_a_collision_is_decided_when_nothing_can_break_or_meet(kind, state, since_touch, reason):
     if kind == "fragmentation" and reason is None:
         state["position"] *= 5  # farther apart than the spheres around them
     state["time"] = since_touch
@@ -81,7 +80,7 @@ def test_chains(kind, state, since_touch, reason):
     "state, since_touch, longer, rests",
     [
         (chain(STILL), LONG, 1e9, True),
-        (chain(STILL), 0.5 * LONG / 2, 1e9, False),
+        (chain(STILL), LONG / 4, 1e9, False),
         (chain(parting(20, 1.1, 2)), LONG, 1e9, False),  # less than a tenth may still break off
         (chain(0.3 * (-1.0) ** np.arange(20)), LONG, 1e9, False),  # shakes
         (chain(APART, [9]), LONG, 1e9, True),
@@ -104,13 +103,16 @@ def test_a_piece_that_oscillates_is_not_judged_by_its_turning_point():
     assert decided.is_recent(np.array([0.74, 0.76, 1.0]) * LONG, LONG, 0.0).tolist() == [False, True, True]
 
 
-def test_strength_grows_with_the_reduced_radius():
+def test_strength_grows_with_the_reduced_radius_also_of_grains_that_shrank_as_they_sintered():
     state = chain(np.zeros(4))
     state["radius"] = np.array([1.0, 1.0, 3.0, 1e9])
     assert decided.contact_strength(state, CONSTANTS) == pytest.approx([1, 1.5 ** (4 / 3), 6 ** (4 / 3)], rel=1e-6)
+    shrunk = {**CONSTANTS, "shrunkRadius": 0.8}
+    assert contact_strength(chain(STILL, bonded=True), shrunk) == pytest.approx(np.full(19, 9.0))
+    assert contact_strength(chain(STILL), shrunk) == pytest.approx(np.full(19, 0.8 ** (4 / 3)))
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(10))
 def test_cuts_are_those_contacts_without_which_there_is_a_piece_more(seed):
     random = np.random.default_rng(seed)
     grains = random.integers(2, 60)
@@ -150,7 +152,6 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
     [
         ("sticking", standing(STILL), LONG, 1, 0, None),
         ("sticking", standing(STILL), LONG / 3, 1, None, "may still rebound"),
-        ("sticking", standing(leaving(0.9)), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1)), LONG, 1, None, "parts of 95% of the mass"),  # between two grains
         ("sticking", standing(leaving(1.2), broken=[18], places=FAR), LONG, 0.95, None, "parts of 90% of the mass"),
         ("sticking", standing(leaving(0.9 * HOLDS), bonded=True), LONG, 1, 0, None),
@@ -163,7 +164,7 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
         ("never met", standing(STILL - 1, on=False), LONG, 0, None, "may still meet the plate"),
     ],
 )
-def test_outcome_and_whether_it_is_decided(kind, state, since_touch, on, restitution, reason):
+def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, on, restitution, reason):
     seen = plate_outcome(START, state, met=kind != "never met")
     assert (seen.kind, seen.mass_on_plate, seen.growth_efficiency) == (kind, on, on)
     assert max(seen.mass_fractions) == pytest.approx(max(on, 1 - on)) and seen.fragments == 1 + (0 < on < 1)
@@ -180,33 +181,20 @@ def test_what_lies_on_the_plate_counts_by_its_mass():
     assert (seen.largest_fragment, seen.growth_efficiency) == (4, pytest.approx(32 / 48, rel=1e-12))
 
 
-def test_grains_that_sintered_hold_as_the_smaller_spheres_that_they_are():
-    bonds, contacts = (
-        contact_strength(chain(STILL, bonded=b), {**CONSTANTS, "shrunkRadius": 0.8}) for b in (True, False)
-    )
-    assert bonds == pytest.approx(np.full(19, 9.0)) and contacts == pytest.approx(np.full(19, 0.8 ** (4 / 3)))
-
-
-def two_grains(separation, velocity, offset=0.0):
-    position = np.array([[0.0, 0, 0], [separation, offset, 0]])
-    return position, np.array([[0.0, 0, 0], [velocity, 0, 0]]), np.ones(2), np.array([0, 1])
-
-
 @pytest.mark.parametrize(
     "separation, velocity, offset, time, meets",
     [
-        (10, -1.0, 0, 100, True),
         (10, -1.0, 0, 7.9, False),  # touch after 8
         (10, -1.0, 0, 8.1, True),
         (10, 1.0, 0, 100, False),
         (10, -1.0, 1.99, 100, True),
         (10, -1.0, 2.01, 100, False),
-        (10, 0.0, 0, 1e9, False),
         (1.9, 5.0, 0, 1, True),  # the spheres around them overlap now
     ],
 )
-def test_two_grains(separation, velocity, offset, time, meets):
-    grains = two_grains(separation, velocity, offset)
+def test_two_grains_that_meet_in_time(separation, velocity, offset, time, meets):
+    position, moving = np.array([[0.0, 0, 0], [separation, offset, 0]]), np.array([[0.0, 0, 0], [velocity, 0, 0]])
+    grains = position, moving, np.ones(2), np.array([0, 1])
     assert pieces_can_meet(*grains, time) is meets
     assert [pieces_that_can_meet(piece, *grains, time).tolist() for piece in (0, 1)] == [[False, meets], [meets, False]]
 

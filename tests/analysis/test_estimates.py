@@ -6,9 +6,9 @@ import numpy as np
 import pandas
 import pytest
 
-from analysis.studies.comparison import Row, as_text, counted, of_table
+from analysis.studies.comparison import Row, as_text, counted
 from analysis.studies.estimates import *
-from analysis.studies.pages import END, START, PageError, filled, require_numbers
+from analysis.studies.pages import END, START, PageError, filled
 
 
 def runs_of(values, **more):
@@ -41,8 +41,6 @@ def test_without_a_second_pair_or_a_value_there_is_no_error():
     assert estimate(mean("y"), runs_of([3.0])) == Estimate(3.0, None, 1)
     assert estimate(mean("y"), runs_of([2.0, 2.0])).error is None
     assert math.isnan(estimate(mean("y"), runs_of([])).value)
-    slope = lambda r: np.polyfit(r.x, r.y, 1)[0] if len(r) > 2 else math.nan
-    assert estimate(slope, runs_of([1.0, 2.0, 4.0], x=[0, 1, 2])).error is None
 
 
 def test_fractions_count_decided_runs_of_pairs_that_met():
@@ -50,23 +48,14 @@ def test_fractions_count_decided_runs_of_pairs_that_met():
     found = ending(runs_of([0.0] * 5, outcome=outcomes), "sticking")
     assert found.value == pytest.approx(3 / 5) and found.error == pytest.approx(math.sqrt(0.6 * 0.4 / 3))
     assert str(found) == "0.60 ± 0.28 (2 of 3, 1 undecided)"
-    twice = pandas.DataFrame({"pair": [1, 1]})
-    with pytest.raises(ValueError, match="several runs"):
-        fraction(twice, twice.pair == 1)
 
 
-def test_a_threshold_is_where_the_lines_between_points_first_fall_through_0():
+def test_a_threshold_is_where_lines_between_points_first_fall_through_0_and_power_laws_are_fitted_exactly():
     speeds = np.array([10.0, 20.0, 30.0, 40.0])
     assert threshold(speeds, 25.0 - speeds) == pytest.approx(25.0)
     assert threshold(speeds, [1.0, -1.0, 1.0, -1.0]) == pytest.approx(15.0)
     assert math.isnan(threshold(speeds, speeds)) and math.isnan(threshold(speeds, -speeds))
-    assert math.isnan(threshold([10.0], [1.0]))
-
-
-def test_the_exponent_of_a_power_law():
-    x = np.geomspace(1, 100, 9)
-    assert exponent(x, 3 * x**1.7) == pytest.approx(1.7, rel=1e-12)
-    assert math.isnan(exponent(x, 0 * x)) and math.isnan(exponent([1.0, 2.0], [1.0, 2.0]))
+    assert exponent(speeds, 3 * speeds**1.7) == pytest.approx(1.7, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -81,7 +70,6 @@ def test_the_exponent_of_a_power_law():
         (0.0, 0.03, 4, (-0.05, 0.05), None, "unclear"),
         (0.3, 0.1, 4, (0.0, None), None, "agrees"),
         (0.1, 0.1, 4, (0.0, None), None, "unclear"),
-        (-0.2, 0.1, 4, (0.0, None), None, "unclear"),
         (-0.4, 0.1, 4, (0.0, None), None, "differs"),
         (0.3, None, 1, (0.0, None), None, "unclear"),
         (10.0, 0.0, 0, (9.0, 11.0), None, "agrees"),  # a closed form
@@ -106,13 +94,7 @@ def test_a_page_has_its_table_filled_and_every_number_in_its_words_checked():
     page = filled("README.md", text, rows, "pairs")
     assert "| ours alone |  | 3.00 ± 0.20 (5) |  |  |" in page and page.endswith(f"{END}\nEnd\n")
     assert filled("README.md", page, rows, "pairs") == page and "1 agrees" in counted(rows)
-    for old, new, says in (
-        ("2.00", "2.01", "no study has this number"),
-        ("alone", "lone", "its table has"),
-        (START, "", "once"),
-    ):
-        with pytest.raises(PageError, match=says):
+    for old, new, words in (("2.00", "2.01", "no study has this number"), ("alone", "lone", "its table has")):
+        with pytest.raises(PageError, match=words):
             filled("README.md", text.replace(old, new), rows, "pairs")
-    require_numbers("p", "−1.0 ± 0.5 (3)", ["-1.0 ± 0.5 (4)"])
-    table = of_table(rows)
-    assert table.word.tolist() == ["agrees", ""] and as_text(rows).iloc[0].tolist()[3:] == ["-1.0", "agrees"]
+    assert as_text(rows).iloc[0].tolist()[3:] == ["-1.0", "agrees"]

@@ -1,20 +1,28 @@
-"""What the figures show, read back from their artists and pixels."""
+"""What figures and films show, read back from their artists and pixels; curves of a table of runs."""
 
+import json
+import shutil
+import subprocess
 from dataclasses import replace
 
 import numpy as np
+import pandas
 import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
+from written_runs import RADIUS, facing, losing, record, write_run
 
+from analysis.__main__ import main
 from analysis.figures.collision import force_kinds, forces_figure, grains_figure, motion_figure
 from analysis.figures.energy import energy_figure
+from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.figures.sphere_raster import paint_spheres
 from analysis.figures.style import new_figure, save_small
 from analysis.measures.compression import maximum_compression
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLOURS
 from analysis.runs.ledger import fractions
+from analysis.studies.plot import CannotPlot, plot
 
 
 @pytest.fixture(scope="module")
@@ -62,13 +70,10 @@ def test_force_lines_are_the_contacts_of_the_slab(run):
         assert to_rgb(axes.get_facecolor()) == (0.0, 0.0, 0.0)
 
 
-def test_grains_are_shown_at_start_maximum_and_end(run):
+def test_grains_are_shown_at_start_maximum_and_end_and_fluffy_aggregates_whole(run):
+    """Of the same grains, cut at z = 0 and not: more of the picture is covered."""
     titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
     assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
-
-
-def test_fluffy_aggregates_are_shown_whole(run):
-    """Of the same grains, cut at z = 0 and not: more of the picture is covered."""
     covered = []
     for filling, said in ((0.4, "behind"), (0.1, "all grains")):
         figure = grains_figure(replace(run, parameters={**run.parameters, "filling": filling}))
@@ -81,17 +86,11 @@ def test_painted_spheres():
     """The nearer one hides the farther; the area is that of a disc; what is smaller than a pixel is seen."""
     position, colour = np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]]), np.eye(3)
     image = paint_spheres(position, np.ones(3), colour, (-1.5, 4.5, -1.5, 1.5), 0.05)
-    assert image.shape == (60, 120, 3)
     assert np.argmax(image[30, 30]) == 0 and np.argmax(image[30, 90]) == 2
-    assert not np.any((image[..., 1] > 0) & (image[..., 0] == 0) & (image[..., 2] == 0))
-    assert np.all(image[0, 0] == 1.0)
     image = paint_spheres(np.zeros((1, 3)), np.ones(1), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.02)
     assert np.sum(image[..., 1] == 0.0) * 0.02**2 == pytest.approx(np.pi, rel=0.01)
     image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
     assert np.any(image[..., 1] == 0.0)
-    position = np.array([[0, 0, 0.0], [2, 0, -1e4], [1e99, 0, 0]])  # one ten thousand times larger, one far away
-    image = paint_spheres(position, np.array([1, 1e4, 1]), np.eye(3), (-2.0, 2.0, -2.0, 2.0), 0.02)
-    assert np.argmax(image[100, 100]) == 0 and np.argmax(image[100, 10]) == 1
 
 
 def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):
@@ -106,3 +105,138 @@ def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):
     with Image.open(tmp_path / "small.png") as picture:
         pixels = {colour for _, colour in picture.convert("RGB").getcolors(10**6)}
     assert set(blues) <= pixels and len(pixels) <= 256
+
+
+# ---- figures of a table of runs ----
+
+
+@pytest.fixture
+def runs():
+    """A table of eight runs at two velocities, in the form of analysis.table."""
+    ends = {1.0: ("sticking", "sticking", "bouncing", "undecided"), 3.0: ("fragmentation",) * 3 + ("sticking",)}
+    cells = [(velocity, seed, outcome) for velocity, own in ends.items() for seed, outcome in enumerate(own)]
+    found = pandas.DataFrame(cells, columns=["velocity", "seed", "outcome"])
+    found = found.assign(run="", kind="collision", impact=0.5, ended=True)
+    found = found.assign(largest_fraction=[0.9, 0.7, 0.5, 0.3, 0.4, 0.2, 0.2, 0.0])
+    found.attrs.update(units={"velocity": "m/s", "largest_fraction": "1"}, parameters=["velocity", "seed", "impact"])
+    return found
+
+
+def drawn(figure):
+    """([(x, y)], [(low, high)]) of the first curve, and all that is written."""
+    (axes,) = figure.axes
+    bars = axes.collections[0].get_segments()
+    texts = [figure._suptitle.get_text(), axes.get_title(), axes.get_xlabel(), axes.get_ylabel()]
+    text = " | ".join(texts).replace("\n", " ")
+    return list(zip(*axes.lines[0].get_data())), [tuple(bar[:, 1]) for bar in bars], text
+
+
+def test_undecided_runs_and_those_that_never_met_are_left_out_of_fractions_and_counted(runs):
+    points, bars, text = drawn(plot("sticking", runs))
+    assert points == [(1.0, pytest.approx(3 / 5)), (3.0, pytest.approx(2 / 6))]
+    assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx((0.6 * 0.4 / 3) ** 0.5)
+    assert "7 runs of 4 pairs, 1 left out" in text and "[m/s]" in text
+    missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)
+    missed.attrs = runs.attrs
+    *same, text = drawn(plot("sticking", missed))
+    assert same == [points, bars] and "7 runs of 4 pairs, 2 left out" in text
+
+
+def test_a_mean_has_the_standard_error_of_its_pairs_which_files_tell_apart_too(runs):
+    points, bars, _ = drawn(plot("largest", runs))
+    assert points == [(1.0, pytest.approx(0.6, rel=1e-12)), (3.0, pytest.approx(0.2, rel=1e-12))]
+    assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx(runs.largest_fraction[:4].std() / 2, rel=1e-12)
+    of_files = runs.assign(seed=1, file=[f"a{seed}.npz" for seed in runs.seed])
+    of_files.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "file"]}
+    assert drawn(plot("largest", of_files))[:2] == (points, bars)
+
+
+def test_runs_that_cannot_be_drawn_are_left_out_and_counted(runs):
+    cells = {"run": "", "kind": "compression", "ended": True, "seed": [1, 2], "finalFilling": [0.3, 0.4], "time": 1.0}
+    both = pandas.concat([runs.assign(time=2.0), pandas.DataFrame(cells)], ignore_index=True)
+    both.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "finalFilling"]}
+    assert drawn(plot("sticking", both))[:2] == drawn(plot("sticking", runs))[:2]
+    ends = runs.assign(d_max=[9.0, *[1.0] * 7], maximum_inside=[False, *[True] * 7])
+    points, _, text = drawn(plot("d_max", ends))
+    assert [y for _, y in points] == [1.0, 1.0] and "7 runs of 4 pairs, 1 left out" in text
+
+
+def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
+    for how, words in (
+        ({"what": "stiking"}, "did you mean sticking"),
+        ({"what": "largest", "x": "outcome"}, "outcome"),
+        ({"by": "velocity"}, "by = velocity"),
+        ({"where": {"velocity": 1000}}, "no run is left"),
+        ({"where": {"velocity": "fast"}}, "must be a number"),
+        ({"logarithmic": "z"}, "logarithmic = z"),
+    ):
+        with pytest.raises(CannotPlot, match=f"^[^\n]*{words}[^\n]*$"):
+            plot(**{"what": "sticking", "runs": runs, **how})
+
+
+def test_runs_that_differ_in_something_else_are_refused_unless_it_follows_from_what_is_drawn(runs):
+    with pytest.raises(CannotPlot, match="^the runs differ in impact too"):
+        plot("sticking", runs.assign(impact=[0.0] + [0.5] * 7))
+    with pytest.raises(CannotPlot, match="a pair has several runs"):
+        plot("sticking", pandas.concat([runs, runs[:1]]).assign(run="again"))
+    grown = runs.assign(grains=[16, 30] * 4, projectileGrains=[16, 30] * 4)
+    grown.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "grains", "projectileGrains"]}
+    assert len(plot("largest", grown, by="grains").axes[0].get_legend_handles_labels()[1]) == 2
+
+
+def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys):
+    file, again = tmp_path / "new" / "a.png", ["--where", "velocity=3"]
+    command = ["plot", "energy", str(cluster_folder), "--where", "velocity=1", "--out", str(file)]
+    assert main([*command, *again]) == 2 and "must be given once" in capsys.readouterr().err and not file.exists()
+    assert main(command) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(file) and file.read_bytes().startswith(b"\x89PNG")
+
+
+# ---- films ----
+
+
+needs_ffmpeg = pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
+
+
+@pytest.fixture
+def approaching(tmp_path):
+    """Two grains, one of each aggregate, that draw near along x in four states."""
+    time = np.arange(4) * 1e-9
+    states = [facing(t, d, 0.0) for t, d in zip(time, (4 * np.arange(4) - 16) * RADIUS)]
+    return write_run(tmp_path / "run", record(1e-6), losing(time), states)
+
+
+def _frames(file):
+    ask = ["ffprobe", "-v", "error", "-show_entries", "stream=width,height,nb_frames", "-of", "json", str(file)]
+    stream = json.loads(subprocess.run(ask, capture_output=True, check=True).stdout)["streams"][0]
+    read = ["ffmpeg", "-v", "error", "-i", str(file), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    data = subprocess.run(read, capture_output=True, check=True).stdout
+    return np.frombuffer(data, dtype=np.uint8).reshape(-1, stream["height"], stream["width"], 3).astype(float) / 255
+
+
+def _places(frame, colour):
+    """Mean column, as a fraction of the width, of the pixels whose hue is the colour's."""
+    colour = np.array(colour)
+    frame = frame[:-40]  # without the legend
+    same_hue = (frame @ colour) / np.linalg.norm(frame + 1e-9, axis=2) / np.linalg.norm(colour) > 0.985
+    return np.argwhere(same_hue)[:, 1].mean() / frame.shape[1]
+
+
+@needs_ffmpeg
+def test_every_state_is_a_frame_with_the_grains_in_their_places(approaching):
+    assert main(["film", str(approaching)]) == 0
+    frames = _frames(approaching / "film.mp4")
+    assert len(frames) == 4
+    width = 2 * 10 * RADIUS  # 8 radii, and a margin of two
+    for number, frame in enumerate(frames):
+        x = (8 - 2 * number) * RADIUS
+        assert _places(frame, AGGREGATE_COLOURS[0]) == pytest.approx(0.5 - x / width, abs=0.01)
+        assert _places(frame, AGGREGATE_COLOURS[1]) == pytest.approx(0.5 + x / width, abs=0.01)
+
+
+def test_a_film_that_cannot_be_encoded_is_one_line_and_leaves_no_file(approaching, capsys, monkeypatch):
+    monkeypatch.setenv("PATH", "/nowhere")
+    for name, words in (("film.nonsense", ".mp4 or .gif"), ("film.mp4", "ffmpeg: not installed"), ("film.gif", "50")):
+        assert main(["film", str(approaching), "--rate", "60", "--out", str(approaching / name)]) == 2
+        message = capsys.readouterr().err
+        assert words in message and message.count("\n") == 1 and not list(approaching.glob("*film*"))

@@ -11,28 +11,24 @@ from analysis.report.rows import row
 from analysis.runs.folder import open_run
 
 
-@pytest.mark.parametrize("contacts", [0, 20, 60, 200])
-def test_fragments_are_what_paths_of_contacts_reach(contacts):
+def test_fragments_are_what_paths_of_contacts_reach():
     """The hundredth power of the matrix of contacts says which grains a path joins."""
-    pairs = np.random.default_rng(contacts).integers(0, 100, size=(contacts, 2))
-    touching = np.eye(100)
-    touching[pairs[:, 0], pairs[:, 1]] = touching[pairs[:, 1], pairs[:, 0]] = 1
-    reached = np.linalg.matrix_power(touching, 100) > 0
-    labels = fragment_labels(100, pairs)
-    assert np.array_equal(labels[:, None] == labels, reached)
-    assert list(fragment_sizes(labels)) == sorted(np.bincount(labels), reverse=True)
+    for contacts in (0, 20, 60, 200):
+        pairs = np.random.default_rng(contacts).integers(0, 100, size=(contacts, 2))
+        touching = np.eye(100)
+        touching[pairs[:, 0], pairs[:, 1]] = touching[pairs[:, 1], pairs[:, 0]] = 1
+        labels = fragment_labels(100, pairs)
+        assert np.array_equal(labels[:, None] == labels, np.linalg.matrix_power(touching, 100) > 0)
 
 
 def test_crumbs_of_a_packing_do_not_count():
     # Aggregate 0: nine grains in a chain and a lone one; aggregate 1: two pieces of five.
-    chain = [[k, k + 1] for k in range(8)] + [[k, k + 1] for k in (*range(10, 14), *range(15, 19))]
-    counted = belongs_to_an_aggregate(np.repeat([0, 1], 10), chain, np.r_[np.ones(9), 0.5, np.ones(10)])
+    pairs = chain(0, 9) + chain(10, 5) + chain(15, 5)
+    counted = belongs_to_an_aggregate(np.repeat([0, 1], 10), pairs, np.r_[np.ones(9), 0.5, np.ones(10)])
     assert np.array_equal(np.flatnonzero(~counted), [9])
-    with pytest.raises(ValueError, match="^aggregate 1 is in crumbs"):
-        belongs_to_an_aggregate(np.repeat([0, 1], [2, 11]), [[0, 1]], np.ones(13))
 
 
-def test_rule():
+def test_equal_aggregates_are_judged_by_the_two_largest_pieces():
     rule = {(1.0, 0.0): "sticking", (0.9, 0.1): "sticking", (0.5, 0.5): "bouncing", (0.55, 0.35): "bouncing"}
     torn = ((0.89, 0.11), (0.65, 0.25), (0.45, 0.44), (0.1, 0.1))
     for fractions, kind in {**rule, **dict.fromkeys(torn, "fragmentation")}.items():
@@ -82,9 +78,7 @@ def test_unlike_aggregates_are_judged_by_what_the_target_gains(pieces, kind):
     assert outcome.restitution is expected or outcome.restitution == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    "pieces, largest, growth", [((40,), 40, 1.0), ((10, 30), 10, 0.0), ((12, 28), 12, 2 / 30), ((9, 31), 9, -8 / 30)]
-)
+@pytest.mark.parametrize("pieces, largest, growth", [((40,), 40, 1.0), ((12, 28), 12, 2 / 30), ((9, 31), 9, -8 / 30)])
 def test_growth_is_by_mass_and_the_heavier_aggregate_is_the_target(tmp_path, pieces, largest, growth):
     """Ten grains of twice the radius, 80 of 110 masses, and thirty single ones."""
     start, end = (_state(STILL, *zip(np.cumsum([0, *own]), own)) for own in ((10, 30), pieces))
@@ -113,21 +107,15 @@ def test_pieces_that_passed_each_other_or_never_met_have_no_restitution():
     assert (outcome.kind, outcome.restitution, outcome.mass_fractions) == ("never met", None, (0.5, 0.5))
 
 
-@pytest.mark.parametrize(
-    "pieces",
-    [
-        (range(0, 13), range(13, 40)),  # a part torn off aggregate 0, the rest still holds aggregate 1
-        (range(0, 17), range(17, 40)),  # three grains more than a tenth of the second piece
-        (range(0, 40, 2), range(1, 40, 2)),  # a merged body that broke in two
-    ],
-)
-def test_two_large_pieces_that_are_not_the_two_aggregates_are_fragments(pieces):
-    """Two pieces with nine tenths of the mass and more than a quarter each, flying apart: no bounce, no restitution."""
-    pairs = [[i, j] for piece in pieces for i, j in zip(piece, piece[1:])]
-    velocity = np.where(np.isin(np.arange(40), pieces[0])[:, None], [[-0.3, 0, 0]], [[0.3, 0, 0]])
-    outcome = _outcome(START, _state(velocity, *pairs))
-    assert sum(outcome.mass_fractions) == 1.0 and min(outcome.mass_fractions) > 0.25
-    assert outcome.kind == "fragmentation" and outcome.restitution is None
+def test_two_large_pieces_that_are_not_the_two_aggregates_are_fragments():
+    """A part torn off aggregate 0; a merged body that broke in two. Two pieces with all of the mass and more than a
+    quarter each, flying apart: no bounce, no restitution."""
+    for pieces in ((range(0, 17), range(17, 40)), (range(0, 40, 2), range(1, 40, 2))):
+        pairs = [[i, j] for piece in pieces for i, j in zip(piece, piece[1:])]
+        velocity = np.where(np.isin(np.arange(40), pieces[0])[:, None], [[-0.3, 0, 0]], [[0.3, 0, 0]])
+        outcome = _outcome(START, _state(velocity, *pairs))
+        assert sum(outcome.mass_fractions) == 1.0 and min(outcome.mass_fractions) > 0.25
+        assert outcome.kind == "fragmentation" and outcome.restitution is None
 
 
 def test_a_grain_that_was_alone_does_not_spoil_sticking():
@@ -137,10 +125,9 @@ def test_a_grain_that_was_alone_does_not_spoil_sticking():
     assert outcome.kind == "sticking" and outcome.mass_fractions[0] == 1.0
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_cumulative_distributions_of_hand_made_fragments(seed):
-    """Eqs 31 to 33, summed term by term."""
-    sizes = np.random.default_rng(seed).integers(1, 40, 25)
+def test_cumulative_distributions_of_hand_made_fragments():
+    """A22 eqs 31 to 33, summed term by term."""
+    sizes = np.random.default_rng(1).integers(1, 40, 25)
     pairs = [pair for start, number in zip(np.cumsum([0, *sizes]), sizes) for pair in chain(start, number)]
     found = fragment_sizes(fragment_labels(sizes.sum(), pairs))
     assert sorted(found) == sorted(sizes)
@@ -155,13 +142,10 @@ def test_cumulative_distributions_of_hand_made_fragments(seed):
 def test_velocities_of_neighbours_by_all_pairs():
     random = np.random.default_rng(1)
     position, velocity = random.uniform(0, 6, (80, 3)), random.normal(size=(80, 3))
-    expected = []
-    for i in range(80):
-        for j in range(i):
-            apart = position[i] - position[j]
-            distance = np.linalg.norm(apart)
-            if distance < 1.1:
-                expected.append(-(velocity[i] - velocity[j]) @ apart / distance)
+    first, second = np.tril_indices(80, -1)
+    apart, faster = position[first] - position[second], velocity[first] - velocity[second]
+    distance = np.linalg.norm(apart, axis=1)
+    expected = -((faster * apart).sum(axis=1) / distance)[distance < 1.1]
     assert len(expected) > 40
     assert np.sort(pair_velocities(position, velocity, 1.1)) == pytest.approx(np.sort(expected))
     assert np.isnan(root_mean_square([])) and root_mean_square([3.0, -4.0]) == pytest.approx(12.5**0.5)

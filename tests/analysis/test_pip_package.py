@@ -1,7 +1,6 @@
 """What pip installs of the repository works by itself: the command and its data files."""
 
 import os
-import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -11,10 +10,6 @@ import pytest
 import analysis
 
 TOP = Path(__file__).resolve().parents[2]
-COPIED = runpy.run_path(str(TOP / "contact_law/installation.py"))["COPIED"]
-LISTED = """import analysis, pathlib
-top = pathlib.Path(analysis.__file__).parent
-print(*(p.relative_to(top.parent) for p in top.rglob("*") if p.is_file() and p.suffix != ".pyc"), sep="\\n")"""
 
 
 @pytest.fixture(scope="module")
@@ -57,10 +52,3 @@ sys.exit(main(["summary", sys.argv[1]]))"""
     command = [sys.executable, "-c", code, str(cluster_folder)]
     done = subprocess.run(command, cwd=TOP, capture_output=True, text=True)
     assert done.returncode == 0 and "sticking" in done.stdout, done.stderr
-
-
-def test_both_ways_of_installing_copy_the_same(call):
-    """pip and make install."""
-    found = call(sys.executable, "-c", LISTED)
-    ours = {file for pattern in COPIED["analysis"] for file in (TOP / "analysis").glob(pattern)}
-    assert set(found.split("\n")) - {""} == {str(file.relative_to(TOP)) for file in ours}

@@ -45,21 +45,15 @@ def test_what_ended_failed_or_was_stopped(tmp_path):
     (folder / "checkpoint").mkdir()
     found = state(folder)
     assert found.kind == WAITING and found.note == "stopped, has a checkpoint" and found.left == pytest.approx(200.0)
-    (tmp_path / "ended" / RUN_FILE).write_text("{")
-    assert state(tmp_path / "ended").kind == FAILED
 
 
-@pytest.mark.parametrize("content", ["[]", "{", '{"derived": {"steps": "x"}, "wallTime": "x", "outcome": 3}'])
-def test_damaged_folders_have_a_state(tmp_path, content):
-    folder = run_folder(tmp_path / "r", "running", 0.5)
-    (folder / RUN_FILE).write_text(content)
-    assert progress_of(folder, run_of(folder)) == 0.0 and state(folder).kind == WAITING
-
-
-def test_progress_is_a_fraction(tmp_path):
+def test_progress_is_a_fraction_and_damaged_folders_have_a_state(tmp_path):
     for time, progress in ((np.nan, 0.0), (-1.0, 0.0), (7.0, 1.0)):
         folder = run_folder(tmp_path / str(time), "running", time)
         assert progress_of(folder, run_of(folder)) == progress
+    for content in ("[]", "{", '{"derived": {"steps": "x"}, "wallTime": "x", "outcome": 3}'):
+        (folder / RUN_FILE).write_text(content)
+        assert progress_of(folder, run_of(folder)) == 0.0 and state(folder).kind == WAITING
 
 
 def test_the_command_lists_a_folder_of_runs(tmp_path, capsys):

@@ -2,9 +2,11 @@
 reaches across, and how many grains are where aggregates meet."""
 
 import numpy as np
+import pandas
 import pytest
 from written_runs import cubic_lattice
 
+from analysis.arrays import numbers, pairs
 from analysis.measures.network import loops, spanned_axes
 from analysis.measures.structure import fractal_dimension, grains_within, zone_filling
 
@@ -40,22 +42,16 @@ def test_loops_of_a_lattice_and_what_hangs_on_it():
     assert loops(12, pairs[5:6]) == (0, 0) and loops(3, []) == (0, 0)
 
 
-@pytest.mark.parametrize("axes", [(), (0,), (1, 2), (0, 1, 2)])
-def test_lattices_connected_along_some_axes(axes):
-    position, pairs = cubic_lattice(4, axes)
+def test_lattices_connected_along_some_axes_and_a_diagonal_chain():
+    """Wherever the grains are: the same network. The chain crosses all three boundaries, and bears a load along its own
+    direction alone."""
     cell = np.full(3, 4.0)
-    assert spanned_axes(position, pairs, cell) == len(axes)
-    # Wherever the grains are: the same network.
-    image = np.random.default_rng(1).integers(-2, 3, position.shape)
-    assert spanned_axes(position + image * cell, pairs, cell) == len(axes)
-    assert spanned_axes(position, pairs[:, ::-1], cell) == len(axes)
-
-
-def test_a_diagonal_chain_spans_one_direction_only():
-    """It crosses all three boundaries, and bears a load along its own direction alone."""
-    position = np.arange(4)[:, None] * np.ones(3)
-    pairs = np.array([(k, (k + 1) % 4) for k in range(4)])
-    assert spanned_axes(position, pairs, np.full(3, 4.0)) == 1
+    for axes in ((), (0,), (1, 2), (0, 1, 2)):
+        position, pairs = cubic_lattice(4, axes)
+        image = np.random.default_rng(1).integers(-2, 3, position.shape)
+        assert spanned_axes(position, pairs, cell) == len(axes)
+        assert spanned_axes(position + image * cell, pairs[:, ::-1], cell) == len(axes)
+    assert spanned_axes(np.arange(4)[:, None] * np.ones(3), [(k, (k + 1) % 4) for k in range(4)], cell) == 1
 
 
 def test_pieces_are_not_added_up_and_a_free_cluster_spans_nothing():
@@ -69,7 +65,6 @@ def test_pieces_are_not_added_up_and_a_free_cluster_spans_nothing():
     # One contact between them makes a network of two directions.
     assert spanned_axes(np.concatenate([x, y]), np.concatenate([both, [(2, 4)]]), np.full(3, 4.0)) == 2
     assert spanned_axes(np.eye(3), [(0, 1), (1, 2), (2, 0)], np.full(3, 9.0)) == 0
-    assert spanned_axes(np.eye(3), [], np.full(3, 9.0)) == 0
 
 
 def test_filling_of_the_zone_that_is_hit_is_one_in_the_mean_and_zero_with_a_hole():
@@ -83,3 +78,16 @@ def test_filling_of_the_zone_that_is_hit_is_one_in_the_mean_and_zero_with_a_hole
     hole = x[~((x[:, 0] < -3.75) & (np.hypot(x[:, 1], x[:, 2]) < 1.25))]
     left, right = (zone_filling(hole, np.zeros(3), 5.0, side) for side in (-1.0, 1.0))
     assert left == 0.0 < right
+
+
+def test_arrays_of_numbers_and_pairs_are_converted_or_refused_by_name():
+    wrong = [None, "x", True, 1j, [None], [[1], [2, 3]], {}, pandas.NA, [1.0, np.nan], [np.inf, 1], [-1.0]]
+    for value in (*wrong, np.zeros((2, 2)), np.ma.masked_array([1.0, 2.0], [0, 1])):
+        with pytest.raises(ValueError, match="^radius: [^\n]*$"):
+            numbers("radius", value, (None,), positive=True)
+    assert numbers("x", [1, 2], (2,)).dtype == float and numbers("n", [1.0, 2.0], whole=True).dtype == np.intp
+    assert np.isnan(numbers("d", [1.0, np.nan], gaps=True)[1]) and numbers("p", [], (None, 3)).shape == (0, 3)
+    assert pairs("contact_pairs", [], 5).shape == (0, 2) and pairs("contact_pairs", [[0, 4]], 5).tolist() == [[0, 4]]
+    for wrong in ([[0, 5]], [[-1, 0]], [[0.5, 1]], [[0, 1, 2]]):
+        with pytest.raises(ValueError, match="^contact_pairs: "):
+            pairs("contact_pairs", wrong, 5)

@@ -1,11 +1,13 @@
-"""The study of elastoplastic aggregates (Arakawa et al. 2024): made runs whose answers are known, fits against closed
-forms."""
+"""The study of elastoplastic aggregates (Arakawa et al. 2024), and that of compressed ones: Andrews's model against its
+integrated motion, made runs whose answers are known, fits against closed forms."""
+
+import re
 
 import numpy as np
 import pandas
 import pytest
-from made_collisions import DENSITY, FILLING, MODULI, OFFSET, made_run
-from written_runs import RADIUS
+from scipy.integrate import solve_ivp
+from written_runs import RADIUS, answered, facing, losing, record, two_pairs, write_run
 
 from analysis.measures.compression import compression_and_velocity
 from analysis.runs.folder import open_run
@@ -13,7 +15,102 @@ from analysis.runs.table import read_table
 from analysis.studies import elastoplastic as a24
 from analysis.studies.estimates import beside, estimate, estimates, mean, where
 from analysis.studies.study import GALLERY
+from analysis.theory import andrews
+from analysis.theory.andrews import Spheres, critical_compression
 from yade_scripts.packings import cpe, moved
+
+MODULI, OFFSET, FILLING, DENSITY = (2.0e6, 20e6), 0.25 * RADIUS, 0.4, 1000.0
+
+
+def integrated(velocity, spheres):
+    """(times [s], compressions [m], velocities [m/s]) of Andrews's spheres until the largest compression and from
+    there until they part, from the force alone (A24 eqs 23, 26, B15, B19, B23, B24)."""
+    scale, critical = spheres.reduced_radius, critical_compression(spheres)
+    mass, stiffness = 16 * np.pi / 3 * spheres.density * scale**3, 4 / 3 * spheres.young * scale**0.5
+
+    def until(end, start, state, force):
+        moving = lambda t, y: [y[1], -force(y[0] * scale) / (mass * scale)]
+        end.terminal, end.direction = True, -1
+        how = {"rtol": 1e-11, "atol": 1e-13 * velocity / scale, "method": "DOP853", "max_step": 2e-9}
+        found = solve_ivp(moving, (start, start + 1e-5), state, events=end, **how)
+        return found.t, *(scale * found.y)
+
+    plastic = lambda d: np.pi * scale * spheres.yield_stress * (d - critical / 3)
+    growing = lambda d: stiffness * max(d, 0.0) ** 1.5 if d <= critical else plastic(d)
+    there = until(lambda t, y: y[1], 0.0, [0.0, velocity / scale], growing)
+    apart = max(there[1][-1] - critical, 0.0)
+    force = lambda d: stiffness * max(d - apart, 0.0) ** 0.5 * (d + 0.5 * apart)
+    return there, until(lambda t, y: y[0] - apart / scale, there[0][-1], [there[1][-1] / scale, 0.0], force)
+
+
+def made_run(path, size, velocity, seed, sticks=False, settles=True, stretch=1.0, **parameters):
+    """Write a run folder of two aggregates of two grains each that move as Andrews's spheres of radius `size` [grain
+    radii] would, with compressions and times larger by the factor `stretch`. With `sticks` they stay in contact, and
+    unless `settles` is False come to rest by the end."""
+    spheres = Spheres(0.5 * (size * RADIUS + OFFSET), FILLING * DENSITY, *MODULI)
+    at, compression, speed = np.concatenate(integrated(velocity, spheres), axis=1)
+    contact = 2.0 * (RADIUS - OFFSET) / velocity
+    time = np.linspace(0.0, contact + 2.0 * at[-1], 401)
+    time = np.append(time, [parameters[name] for name in ("duration",) if name in parameters])
+    since = (time - contact) / stretch
+    free = velocity * np.minimum(since, 0.0) + speed[-1] * np.maximum(since - at[-1], 0.0)
+    d = stretch * (np.interp(since, at, compression) + free) - 2.0 * OFFSET
+    v = np.interp(since, at, speed)
+    parted = contact + stretch * at[-1]
+    if sticks and settles:
+        v = v * np.clip((time[-1] - time) / (time[-1] - parted), 0.0, 1.0)
+    kinetic, touching = 1e-15 * v**2, (time > contact) & (sticks | (time < parted))
+    own = dict(kinetic=kinetic, slidingDissipation=1e-15 * velocity**2 - kinetic, contacts=2 + touching)
+    history = losing(time, touching=touching, d=d, v=v, **own)
+    shown = (*range(0, 401, 50), *range(401, len(time)))
+    two = dict(one=[[0, 0, 0], [0, 2 * RADIUS, 0]], pairs=[[0, 1]], reach=size * RADIUS)
+    states = [facing(time[k], d[k], v[k], **two, touching=touching[k]) for k in shown]
+    scene = dict(packing="cpe", material="ice", filling=FILLING, radius=size, velocity=velocity, seed=seed)
+    about = record(size * RADIUS, {**scene, "impact": 0.0, "stepFraction": 0.1, **parameters})
+    return write_run(path, about, history, states)
+
+
+# ---- Andrews's model against its integrated motion, its limits and A24's numbers ----
+
+
+V = 10**0.5
+PAPER = Spheres(0.5 * 80.271e-7, 400.0, 2.25e6, 15.7e6)
+
+
+@pytest.mark.parametrize(
+    "own", [PAPER, (2e-6, 400.0, 1.7e6, 80e6), (4e-6, 400.0, 3.2e6, 15.7e6), (4e-6, 300.0, 9e6, 5e6)]
+)
+def test_closed_forms_agree_with_the_integrated_force(own):
+    """The paper's, mostly plastic, just beyond yield, and elastic throughout."""
+    spheres = own if own is PAPER else Spheres(*own)
+    there, back = integrated(V, spheres)
+    assert andrews.largest_compression(V, spheres) == pytest.approx(there[1][-1], rel=1e-8)
+    assert andrews.time_of_largest_compression(V, spheres) == pytest.approx(there[0][-1], rel=1e-6)
+    assert andrews.restitution(V, spheres) == pytest.approx(-back[2][-1] / V, rel=1e-6)
+
+
+def test_limits_are_reached():
+    elastic, rigid = Spheres(4e-6, 400.0, np.inf, 14.6e6), Spheres(4e-6, 400.0, 1.67e6, np.inf)
+    whole, plastic = andrews.elastic_compression(V, elastic), andrews.plastic_compression(V, rigid)
+    eq_33 = 2 * np.pi / 3**0.5 * (400 / 1.67e6) ** 0.5 * 4e-6
+    limits = (elastic, whole, 1.4716 * whole / V, 1.0), (rigid, plastic, eq_33, 0.0)
+    for spheres, largest, time, restitution in limits:
+        assert andrews.largest_compression(V, spheres) == pytest.approx(largest)
+        assert andrews.time_of_largest_compression(V, spheres) == pytest.approx(time, rel=1e-4)
+        assert andrews.restitution(V, spheres) == restitution
+
+
+def test_numbers_of_the_paper():
+    """Its best fits give its delta_max/R* (eqs 19, 21), and section 4.3.2 the ends of Fig. 10."""
+    assert andrews.largest_compression(V, PAPER) / PAPER.reduced_radius == pytest.approx(0.113, abs=5e-4)
+    loose = Spheres(1.0, 300.0, 0.428e6, 4.96e6)
+    assert andrews.largest_compression(V, loose) == pytest.approx(0.199, abs=5e-4)
+    assert andrews.young_if_elastic(0.113, V, 400.0) == pytest.approx(14.6e6, abs=0.05e6)
+    assert andrews.stress_if_rigid(0.113, V, 400.0) == pytest.approx(1.67e6, abs=0.005e6)
+
+
+# ---- the study ----
+
 
 TRUTH = a24.Aggregates(MODULI[0], 1.0 / MODULI[1], OFFSET / RADIUS, FILLING * DENSITY)
 VELOCITIES = [10 ** (0.1 * i) for i in (1, 3, 5, 7)]
@@ -92,15 +189,6 @@ def test_moduli_are_found_up_to_the_rigid_plastic_limit():
     assert np.isnan(a24.papers_way(rows_of(TRUTH, 0.01, sizes=(40.0,)))).all()
 
 
-def test_correlation_with_the_zones_is_that_about_the_means():
-    random = np.random.default_rng(3)
-    rows = pandas.DataFrame({"radius": np.repeat([40.0, 80.0], 20), "zone_filling": 1 + 0.03 * random.normal(size=40)})
-    rows["d"] = 0.05 * rows.radius - 0.2 * rows.radius * (rows.zone_filling - 1) + 0.1 * random.normal(size=40)
-    sizes = rows.assign(x=rows.radius * rows.zone_filling).groupby("radius")[["x", "d"]]
-    away = sizes.transform(lambda own: own - own.mean())
-    assert a24.zone_correlation(rows) == pytest.approx(np.corrcoef(away.x, away.d)[0, 1])
-
-
 def test_packings_made_again_are_those_of_the_runs():
     """d(0) and the filling of the zones that meet of runs in the gallery, from their seeds."""
     table = read_table(GALLERY / "elastoplastic" / "runs.csv", a24.STUDY.columns)[0]
@@ -114,3 +202,33 @@ def test_packings_made_again_are_those_of_the_runs():
         assert d + 2 * row.grain_radius == pytest.approx(row.offset, abs=1e-9 * row.grain_radius)
         zones = a24.zones_that_meet(position, aggregate, row.radius, row.grain_radius)
         assert zones == pytest.approx(row.zone_filling)
+
+
+# ---- the study of compressed aggregates beside CPE ones ----
+
+
+def collision(path, seed, compressed):
+    packing = {"packing": "compressed", "filling": 0.401, "nominal": 0.4, "aggregateRadius": 20 * RADIUS}
+    own = {"targetPacking": {**packing, "cell": seed}, "projectilePacking": {**packing, "filling": 0.399}}
+    kind = "file" if compressed else "cpe"
+    two_pairs(path, 3.0, seed, derived=own if compressed else {}, packing=kind, filling=0.4, radius=20.0)
+
+
+def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):
+    """They touch at 101 ns and turn around at 200 ns, 99^2/200 ns times v nearer."""
+    for seed in (1, 2, 3):
+        for compressed in (0, 1):
+            collision(tmp_path / f"{compressed}-{seed}", seed, compressed)
+    two_pairs(tmp_path / "other", 3.0, 1, packing="file")
+    found, runs, said = answered(capsys, "compressed", tmp_path)
+    assert runs == 6 and "neither CPE aggregates nor spheres cut out" in said
+    found = {re.sub(r", φ = 0.4, 3 m/s.*?(?= \[|$)", "", what): row["ours"] for what, row in found.items()}
+    deepest = pytest.approx(3.0 * 99e-9**2 / 200e-9 / RADIUS, rel=1e-3)
+    # A24 eqs 31 and 44, of spheres of 400 kg/m^3 with R* = 10 r
+    over = 16 / 3 * 400 * 3.0**2 / (0.1 * deepest.expected) ** 2 / (0.47e6 * (1 / 0.4 - 1 / 0.74) ** -3)
+    for kind in ("CPE", "compressed"):
+        assert found[f"compression from the first touch to d_max, {kind} [r]"] == deepest
+        assert found[f"its time, {kind} [ns]"] == pytest.approx(99, rel=0.02)
+        assert found[f"yield stress over A24's static one, {kind}"] == pytest.approx(over, rel=3e-3)
+        assert found[f"sticking, {kind}"] == pytest.approx(0.8)
+    assert found["compression, compressed over CPE"] == pytest.approx(1.0)

@@ -1,4 +1,5 @@
-"""What the analysis writes: whole or not there, in the place of files only, never over what it reads."""
+"""Sums of ended runs: damage is found by what reads the file, and by `analysis verify`; what the
+analysis writes is whole or not there, and never in the place of what it reads."""
 
 import os
 import shutil
@@ -9,20 +10,72 @@ import time
 from pathlib import Path
 
 import pytest
-from written_runs import two_pairs
+from written_runs import flip, two_pairs, unseal
 
+from analysis import table
 from analysis.__main__ import main
-from analysis.runs.files import write_file
+from analysis.runs.files import RunFolderError, write_file
+from analysis.runs.folder import open_run
+from analysis.runs.status import NO_SUMS
 
 TOP = Path(__file__).resolve().parents[2]
+FILES = ("run.json", "history.npz", "states/000000.npz", "states/000002.npz", "ended")
+DAMAGE = {
+    "a flipped bit": lambda file, other: flip(file),
+    "truncated": lambda file, other: file.write_bytes(file.read_bytes()[:-7]),
+    "of another run": lambda file, other: shutil.copy(other, file),
+    "missing": lambda file, other: file.unlink(),
+}
 
 
-@pytest.mark.parametrize("make", [Path.mkdir, os.mkfifo])
-def test_what_is_no_file_is_refused_and_stays(tmp_path, make):
-    make(tmp_path / "page.html")
-    with pytest.raises(OSError, match="must be a file") as refused:
-        write_file(tmp_path / "page.html", "text")
-    assert refused.value.filename == str(tmp_path / "page.html") and not (tmp_path / "page.html").is_file()
+def everything(path):
+    found = open_run(path)
+    return found.ended, found.states.times, [found.states[k] for k in range(len(found.states))]
+
+
+@pytest.mark.parametrize("how", DAMAGE)
+@pytest.mark.parametrize("name", FILES)
+def test_damage_is_found_where_it_is_read_by_verify_and_by_sha256sum(run, cluster_folder, capsys, name, how):
+    (run / "notes.txt").write_text("mine")  # a file of one's own is no harm
+    everything(run)
+    assert main(["verify", str(run)]) == 0 and "also holds notes.txt" in capsys.readouterr().out
+    check = ["sha256sum", "--check", "--strict", "ended"]
+    assert subprocess.run(check, cwd=run, capture_output=True).returncode == 0
+    DAMAGE[how](run / name, cluster_folder / name)
+    if (name, how) == ("ended", "missing"):  # one that has not ended
+        assert not open_run(run).ended
+    else:
+        with pytest.raises(RunFolderError):
+            everything(run)
+    assert main(["verify", str(run)]) == 2
+    assert name in capsys.readouterr().err or name == "ended"
+    assert subprocess.run(check, cwd=run, capture_output=True).returncode != 0
+
+
+def test_states_in_each_others_place_and_one_too_many(run, capsys):
+    first, last = (run / "states" / name for name in ("000000.npz", "000002.npz"))
+    shutil.copy(first, run / "states" / "000003.npz")
+    with pytest.raises(RunFolderError, match="000003.npz: not of this run"):
+        open_run(run)
+    assert main(["verify", str(run)]) == 2 and "000003.npz: not of this run" in capsys.readouterr().err
+    (run / "states" / "000003.npz").rename(last)
+    with pytest.raises(RunFolderError, match="000002.npz: not as it was written"):
+        open_run(run).last
+
+
+def test_formats_before_5_are_read(run, capsys):
+    """Format 4 had sums of archives' ends in lines that begin with #; those before had none, and an empty `ended`."""
+    lines = (run / "ended").read_text().splitlines()
+    more = ['# {"sha256": "0", "check": "sha256sum -c ended"}', *lines, f"# {64 * '0'}  history.npz from byte 7 on"]
+    (run / "ended").write_text("\n".join(more) + "\n")
+    everything(run)
+    unseal(shutil.copytree(run, run.parent / "runs" / "old"))
+    everything(run.parent / "runs" / "old")
+    assert len(table(run.parent / "runs")) == 1
+    assert main(["verify", str(run.parent)]) == 0 and capsys.readouterr().out.count(NO_SUMS) == 1
+
+
+# ---- what is written ----
 
 
 def test_content_is_on_the_disk_before_it_takes_the_name(tmp_path, monkeypatch):
@@ -34,17 +87,9 @@ def test_content_is_on_the_disk_before_it_takes_the_name(tmp_path, monkeypatch):
     assert calls == ["fsync", "replace", "fsync"]
 
 
-def test_a_link_is_replaced_and_what_it_leads_to_stays(tmp_path):
-    (tmp_path / "mine.txt").write_text("mine")
-    (tmp_path / "page.html").symlink_to("mine.txt")
-    write_file(tmp_path / "page.html", "new")
-    assert not (tmp_path / "page.html").is_symlink() and (tmp_path / "page.html").read_text() == "new"
-    assert (tmp_path / "mine.txt").read_text() == "mine"
-
-
 @pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
 def test_a_film_that_is_stopped_leaves_nothing(own):
-    two_pairs(own / "runs" / "long", 3.0, 9, states=400)
+    two_pairs(own / "runs" / "long", 3.0, 9, how={"states": 400})
     command = [sys.executable, "-m", "analysis", "film", str(own / "runs" / "long"), "--out", str(own / "film.mp4")]
     before = set(own.iterdir())
     process = subprocess.Popen(command, cwd=TOP, stderr=subprocess.PIPE, text=True)
@@ -56,28 +101,22 @@ def test_a_film_that_is_stopped_leaves_nothing(own):
     assert set(own.iterdir()) == before
 
 
-# ---- nothing is written over what is read, or what others have written ----
+def test_files_of_others_and_what_is_read_are_not_written_over(own, capsys, monkeypatch):
+    def study(*runs, to="out"):
+        return main(["study", "sticking.py", *runs, "--figures", to])
 
-
-def test_pages_of_others_stay(own, capsys, monkeypatch):
     monkeypatch.chdir(own)
     (own / "runs.csv").write_text("the user's own")
-    assert main(["study", "sticking.py", "runs/s1", "--figures", "."]) == 2
-    assert "runs.csv: no analysis of sticking has written it; must be another folder" in capsys.readouterr().err
-    assert (own / "runs.csv").read_text() == "the user's own"
-
-
-def test_a_table_is_not_written_over_itself(own, capsys, monkeypatch):
-    def study(*runs):
-        return main(["study", "sticking.py", *runs, "--figures", "out"])
-
-    monkeypatch.chdir(own)
+    assert study("runs/s1", to=".") == 2 and (own / "runs.csv").read_text() == "the user's own"
+    assert "runs.csv: no analysis of sticking has written it" in capsys.readouterr().err
+    (own / "out").mkdir()
+    (own / "out" / "README.md").write_text("the user's own")
     study("runs/s1", "runs/s2")
     table, comparison = own / "out" / "runs.csv", own / "out" / "comparison.csv"
     before, text = table.stat(), table.read_text()
     comparison.unlink()
     capsys.readouterr()
     assert study("out/runs.csv") == 0 and comparison.exists()
-    assert study("out/runs.csv", "runs/s3") == 2
-    assert capsys.readouterr().err == "analysis: out/runs.csv: is what is read; must be another file\n"
+    assert study("out/runs.csv", "runs/s3") == 2 and "is what is read" in capsys.readouterr().err
     assert os.path.samestat(table.stat(), before) and table.read_text() == text
+    assert (own / "out" / "README.md").read_text() == "the user's own"

@@ -7,6 +7,7 @@ from math import pi
 
 import numpy as np
 
+from analysis.__main__ import main
 from analysis.runs.format import CHANNELS, ENDED_FILE, FORMAT, HISTORY_FILE, RUN_FILE, STATES_FOLDER, state_file
 from analysis.theory import ICE, collide_pair, normal_energy, normal_force, pair_constants, pair_motion
 from yade_scripts import packings
@@ -53,15 +54,8 @@ def losing(time, energy=0.0, lost={}, touching=0, **series):
     history = {name: lost.get(name, 0.0) * energy * time / time[-1] for name in CHANNELS}
     history["kinetic"] = energy - sum(history.values())
     touching = zero.astype(int) + touching
-    return {
-        **history,
-        "time": time,
-        "d": zero,
-        "v": zero,
-        "contacts": 0 * touching,
-        "contacts_between": touching,
-        **series,
-    }
+    usual = {"time": time, "d": zero, "v": zero, "contacts": 0 * touching, "contacts_between": touching}
+    return {**history, **usual, **series}
 
 
 def write_run(path, run_record, history, states, ended=True):
@@ -78,10 +72,8 @@ def write_run(path, run_record, history, states, ended=True):
 
 def seal(path):
     """Write the sums of a folder's files, as they are now."""
-    files = sorted(file for file in path.glob("**/*") if file.suffix in (".json", ".npz"))
-    lines = [
-        f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.relative_to(path).as_posix()}\n" for file in files
-    ]
+    files = sorted(file.relative_to(path) for file in path.glob("**/*") if file.suffix in (".json", ".npz"))
+    lines = (f"{hashlib.sha256((path / file).read_bytes()).hexdigest()}  {file.as_posix()}\n" for file in files)
     (path / ENDED_FILE).write_text("".join(lines))
 
 
@@ -97,17 +89,14 @@ def state_arrays(time, position, velocity, aggregate, pairs=()):
     """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2)."""
     position = np.asarray(position, dtype=float)
     pairs = np.asarray(pairs, dtype=int).reshape(-1, 2)
-    return {
-        "time": time,
+    grains = {
         "position": position,
         "velocity": np.asarray(velocity, dtype=float),
-        "angular_velocity": np.zeros_like(position),
         "radius": np.full(len(position), RADIUS),
-        "aggregate": np.asarray(aggregate, dtype=int),
-        "contact_pairs": pairs,
-        "contact_normal_force": np.zeros(len(pairs)),
-        "contact_bonded": np.zeros(len(pairs), dtype=bool),
     }
+    grains |= {"angular_velocity": np.zeros_like(position), "aggregate": np.asarray(aggregate, dtype=int)}
+    contacts = {"contact_normal_force": np.zeros(len(pairs)), "contact_bonded": np.zeros(len(pairs), dtype=bool)}
+    return {"time": time, **grains, "contact_pairs": pairs, **contacts}
 
 
 def pair_run(path):
@@ -158,14 +147,14 @@ def flip(file, where=0.4, bits=4):
     file.write_bytes(bytes(data))
 
 
-def two_pairs(path, velocity, seed, sticks=True, settles=True, ended=True, states=3, derived={}, **parameters):
+def two_pairs(path, velocity, seed, sticks=True, settles=True, derived={}, how={}, **parameters):
     """A run folder of two aggregates of two grains each: they meet at velocity [m/s], lose their motion to sliding,
-    and stick (still parting at the end unless it settles) or part at half their speed. derived: as record's others.
-    Returns the path."""
+    and stick (still parting at the end unless it settles) or part at half their speed. derived: as record's others;
+    how: as meeting's. Returns the path."""
     values = {"packing": "cpe", "material": "ice", "grains": 2, "velocity": velocity, "seed": seed, "impact": 0.0}
     pair, lost = np.array([[0, 0, 0], [0, 2 * RADIUS, 0]]), {"slidingDissipation": 1.0}
     about, v = record(RADIUS, {**values, **parameters}, **derived), -0.5 if not sticks else 0.0 if settles else -0.4
-    return meeting(path, about, pair, [[0, 1]], velocity, lost, away=v, sticks=sticks, ended=ended, states=states)
+    return meeting(path, about, pair, [[0, 1]], velocity, lost, away=v, sticks=sticks, **how)
 
 
 def two_clusters(path):
@@ -178,11 +167,11 @@ def two_clusters(path):
     return meeting(path, record(reach, values), position, packings.contacts(cluster), 1.0, lost, states=12)
 
 
-def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ended=True, states=3):
+def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ended=True, states=3, lasts=4e-7):
     """A run folder of an aggregate `one` (N,3) with contact pairs (M,2), and another like it, that meet at velocity
     [m/s]: a contact of their first grains forms; lost: {channel: its fraction of the motion's energy}; away: velocity
     at the end over the first."""
-    time = np.linspace(0.0, 4e-7, 401)
+    time = np.linspace(0.0, lasts, 401)
     meet, turn = 1e-7, 2e-7
     v = velocity * np.interp(time, [0, meet, turn, 3e-7], [1, 1, 0, away])
     d = -velocity * meet + np.concatenate([[0.0], np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(time))])
@@ -197,3 +186,11 @@ def meeting(path, about, one, pairs, velocity, lost, away=0.0, sticks=True, ende
         force = random.normal(size=len(state["contact_pairs"])) * PAIR.pull_off_force
         kept.append({**state, "contact_normal_force": force})
     return write_run(path, about, history, kept, ended)
+
+
+def answered(capsys, study, *arguments):
+    """({quantity: row}, number of runs that count, lines on stderr) of what a study answers as JSON."""
+    assert main(["study", str(study), *map(str, arguments), "--json"]) == 0
+    out, err = capsys.readouterr()
+    answer = json.loads(out)
+    return {row["quantity"]: row for row in answer["rows"]}, answer["runs"], err

@@ -6,9 +6,7 @@ import re
 import numpy as np
 import pandas
 import pytest
-from made_collisions import made_run
-from study_answers import answered
-from written_runs import two_pairs
+from written_runs import answered, two_pairs
 
 from analysis.__main__ import main
 from analysis.runs.folder import open_run
@@ -35,54 +33,38 @@ def test_the_documented_study_runs(own, capsys):
     assert table.ours[STICKS.format(3)] == 0.8 and len(table) == len(found)
 
 
-@pytest.mark.parametrize(
-    "other, varied, status",
-    [
-        (dict(material="silicate"), "", 2),
-        (dict(material="silicate"), '"material", ', 0),
-        (dict(grains=None), "", 0),  # as the run derived it
-        (dict(duration=9.0, endWhenApart=0), "", 0),
-    ],
-)
-def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys, other, varied, status):
+def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys):
     """The fixture's runs, as those of earlier versions, lack some parameters."""
-    code = (own / "sticking.py").read_text().replace('varied=("', f'varied=({varied}"')
-    (own / "sticking.py").write_text(code)
-    for seed, parameters in ((6, other), (7, {})):
-        usual = {"material": "ice", "duration": 1.0, "endWhenApart": 1}
-        two_pairs(own / "runs" / f"s{seed}", 3.0, seed, derived={"grains": 2}, **{**usual, **parameters})
-    assert study(own, own / "runs") == status
-    if status:
-        assert "the runs differ in material too" in capsys.readouterr().err.splitlines()[-1]
-    else:
-        assert "(5 of 5, 1 undecided)" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    "old, new, says",
-    [
-        ('    packing="', '    pakcing="', "pakcing: no run has this parameter (did you mean packing?)"),
-        ('ending(own, "sticking")', "nothing(own)", "NameError at line"),
-        ("own in runs.groupby", "own in runs.groupbuy", "sticking.py: AttributeError at line"),
-        ('("grains", "velocity", "seed")', '("velocity", "seed")', "KeyError at line"),
-    ],
-)
-def test_a_slip_in_ones_own_file_is_one_line(own, capsys, old, new, says):
+    two_pairs(own / "runs" / "s6", 3.0, 6, derived={"grains": 2}, grains=None, duration=9.0, endWhenApart=0)
+    two_pairs(own / "runs" / "s7", 3.0, 7, duration=1.0, endWhenApart=1)
+    assert study(own, own / "runs") == 0 and "(5 of 5, 1 undecided)" in capsys.readouterr().out
+    two_pairs(own / "runs" / "s8", 3.0, 8, material="silicate")
+    assert study(own, own / "runs") == 2
+    assert "the runs differ in material too" in capsys.readouterr().err.splitlines()[-1]
     code = (own / "sticking.py").read_text()
-    assert old in code
-    (own / "sticking.py").write_text(code.replace(old, new))
-    assert study(own, own / "runs", "--figures", own / "out") == 2
-    assert says in capsys.readouterr().err.splitlines()[-1]
+    (own / "sticking.py").write_text(code.replace('varied=("', 'varied=("material", "'))
+    assert study(own, own / "runs") == 0 and "(6 of 6, 1 undecided)" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("short, long", ["ab", "ba"])
-def test_of_two_runs_of_a_collision_the_longer_one_counts(own, capsys, short, long):
-    for name, more in ((short, {}), (long, dict(duration=1.0))):
-        made_run(own / "both" / name, 20, 3.0, 1, grains=2, **more)
-    assert study(own, own / "both", "--format", "csv") == 0
-    said = capsys.readouterr()
-    assert [row.split(",")[0] for row in said.out.splitlines() if row[0] != "#"] == ["run", long]
-    assert f"both/{short}: the same grains, velocity, seed" in said.err
+def test_a_slip_in_ones_own_file_is_one_line(own, capsys):
+    code = (own / "sticking.py").read_text()
+    for old, new, words in (
+        ('    packing="', '    pakcing="', "pakcing: no run has this parameter (did you mean packing?)"),
+        ("own in runs.groupby", "own in runs.groupbuy", "sticking.py: AttributeError at line"),
+    ):
+        (own / "sticking.py").write_text(code.replace(old, new))
+        assert study(own, own / "runs", "--figures", own / "out") == 2
+        assert words in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_of_two_runs_of_a_collision_the_longer_one_counts(own, capsys):
+    for short, long in ("ab", "ba"):
+        for name, lasts in ((short, 4e-7), (long, 8e-7)):
+            two_pairs(own / short / name, 3.0, 1, how={"lasts": lasts})
+        assert study(own, own / short, "--format", "csv") == 0
+        out, err = capsys.readouterr()
+        assert [row.split(",")[0] for row in out.splitlines() if row[0] != "#"] == ["run", long]
+        assert f"{short}/{short}: the same grains, velocity, seed" in err
 
 
 def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
@@ -106,13 +88,6 @@ def test_the_page_holds_everything_and_text_of_the_data_is_no_html(own):
     pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', text)
     assert len(pictures) == text.count("<img") == 1 and base64.b64decode(pictures[0]).startswith(b"\x89PNG")
     assert "<script>" not in text and text.count("&lt;script&gt;") >= 2 and "3 of 3" in text and str(own) not in text
-
-
-def test_a_page_of_somebody_else_stays(own):
-    (own / "out").mkdir()
-    (own / "out" / "README.md").write_text("the user's own")
-    assert study(own, own / "runs", "--figures", own / "out") == 0
-    assert (own / "out" / "README.md").read_text() == "the user's own"
 
 
 def test_snapshots_are_drawn_from_run_folders_and_from_what_is_kept(own):

@@ -1,5 +1,4 @@
-"""What the analysis is like in a notebook: names, examples, what a run shows, pickles, tables of runs and of
-fragments."""
+"""What the analysis is like in a notebook: names, examples, what a run shows; tables of runs, and as files."""
 
 import doctest
 import pickle
@@ -10,13 +9,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refused import refused
 
 import analysis
 from analysis.report.rows import table
 from analysis.runs.files import RunFolderError
 from analysis.runs.format import CHANNELS
+from analysis.runs.table import Column, TableError, make_table, read_table, table_text
 
 TOP = Path(__file__).resolve().parents[2]
+COLUMNS = (Column("velocity", "m/s", "impact velocity"), Column("seed", "", "seed", kind="i"))
 MODULES = [m.name for m in pkgutil.walk_packages(analysis.__path__, "analysis.") if m.name != "analysis.__main__"]
 
 
@@ -75,3 +77,21 @@ def test_a_run_that_cannot_be_read_is_named_and_left_out(run, tmp_path):
         assert len(table([run, tmp_path])) == 1
     with pytest.raises(RunFolderError, match="no run folder matches"):
         table(f"{tmp_path}/*/*")
+
+
+def test_what_was_written_is_read_back_and_what_is_no_table_is_one_line(tmp_path):
+    """With names of any characters, saved by an editor that puts a mark of the encoding before it; versions 0.5 and 0.6
+    put the text's sum into its head."""
+    names, file = ["# s3", "a\u2028b", "c\x85d", "e\udcfff"], tmp_path / "runs.csv"
+    table = make_table((tmp_path / name, {"velocity": 1 / 3, "seed": k}) for k, name in enumerate(names))
+    text = table_text(table, COLUMNS, {"study": "own"})
+    summed = text.replace("# {", f'# {{"sha256": "{64 * "0"}", ', 1)
+    for written, encoding in ((text, "utf-8"), (summed, "utf-8-sig")):
+        file.write_text(written, encoding=encoding)
+        again, head = read_table(file, COLUMNS)
+        assert list(again.run) == list(table.run) and again.run[0] == "# s3" and head == {"study": "own"}
+        assert list(again.velocity) == [1 / 3] * 4 and list(again.seed) == [0, 1, 2, 3]
+    for before, after, words in (("seed\n", "velocity\n", "velocity 2 times"), ('"own"', "[" * 100_000, "not a table")):
+        file.write_text(text.replace(before, after))
+        with refused(TableError, words):
+            read_table(file, COLUMNS)
