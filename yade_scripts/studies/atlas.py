@@ -22,7 +22,7 @@ import argparse
 import os
 import sys
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -42,7 +42,7 @@ from yade_scripts.materials import equilibrium_overlap
 from yade_scripts.materials import pair_constants as contact_constants
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_state
-from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.packings.packing import PackingError
 from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import table
 
@@ -210,7 +210,7 @@ def _compressed(scene, index):
         with suppress(PackingError):  # an empty place
             found = cut(state, CutParameters(radius=radius, seed=PLACES * scene.seed + number), index)
             if found.grains >= KEPT * scene.grains[index]:
-                return Packing(found.position, found.radius, found.seed, {**found.parameters, "cell": scene.cell})
+                return replace(found, parameters={**found.parameters, "cell": scene.cell})
     raise PackingError(f"{file}: no {scene.grains[index]} grains hang together in {PLACES} places")
 
 

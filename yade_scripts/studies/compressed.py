@@ -13,6 +13,7 @@ may share grains.
 
 import os
 import sys
+from dataclasses import replace
 from itertools import product
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -20,7 +21,7 @@ sys.path.insert(0, TOP)
 from analysis.progress import progress
 from yade_scripts import packings
 from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_state
-from yade_scripts.packings.packing import Packing, PackingError
+from yade_scripts.packings.packing import PackingError
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
 FILLINGS, PAIRS = (0.4, 0.3), 30
@@ -53,17 +54,12 @@ def cut_pair(filling, seed):
     if all(map(os.path.exists, files)):
         return
     folder = os.path.join(cell(filling, seed), "states")
-    try:
-        last = max(os.listdir(folder))
-    except (OSError, ValueError):
-        raise PackingError(
-            f"{folder}: no states; must be those of a cell: run the table compressed-cells first"
-        ) from None
-    state, place = read_periodic_state(os.path.join(folder, last)), 0
+    if not os.path.isdir(folder):
+        raise PackingError(f"{folder}: no states; must be those of a cell: run the table compressed-cells first")
+    state, places = read_periodic_state(os.path.join(folder, max(os.listdir(folder)))), iter(range(PLACES))
     for index, file in enumerate(files):
-        while place < PLACES:
+        for place in places:
             found = cut(state, CutParameters(radius=float(RADIUS), seed=1000 * seed + place), index)
-            place += 1
             if abs(found.parameters["filling"] / filling - 1) <= TOLERANCE:
                 break
         else:
@@ -71,7 +67,7 @@ def cut_pair(filling, seed):
                 f"{cell(filling, seed)}: no sphere of that filling in {PLACES} places; must be another cell"
             )
         about = {**found.parameters, "cell": seed, "nominal": filling}
-        packings.save(file, Packing(found.position, found.radius, found.seed, about))
+        packings.save(file, replace(found, parameters=about))
 
 
 def cell_rows():

@@ -30,23 +30,12 @@ LONG = "runs/elastoplastic-long"
 
 
 def row(filling, radius, i, seed, folder="runs/elastoplastic", step=STEP, duration=None, ending="", **changed):
-    """A row of a table, {column: value}; its run folder is FOLDER/fFILLING-RRADIUS-iI-sSEED and the ending.
-
-    duration: in seconds, as text (DURATION if left out); changed: other parameters of the collision.
-    """
+    """A row of a table, whose run folder is FOLDER/fFILLING-RRADIUS-iI-sSEED and the ending; duration [s] as text
+    (DURATION if left out); changed: other parameters of the collision."""
     name = f"f{filling:g}-R{radius:g}-i{i}-s{seed}{ending}"
-    return {
-        "description": name,
-        "filling": filling,
-        "radius": radius,
-        "velocity": f"10**(0.1*{i})",
-        "seed": seed,
-        **changed,
-        "duration": duration or DURATION.format(radius=radius),
-        "stepFraction": step,
-        "threads": 1,
-        "out": f"{folder}/{name}",
-    }
+    found = {"description": name, "filling": filling, "radius": radius, "velocity": f"10**(0.1*{i})", "seed": seed}
+    found |= {**changed, "duration": duration or DURATION.format(radius=radius), "stepFraction": step, "threads": 1}
+    return {**found, "out": f"{folder}/{name}"}
 
 
 def desk():
@@ -90,45 +79,40 @@ def prediction():
     return pairs(60, REFERENCE, range(101, 109)) + slow + pairs(80, REFERENCE, range(4, 11))
 
 
-def referee():
-    """Rows of what the comparison leaves open."""
-
-    def pairs(radius, exponents, seeds, fillings=FILLINGS, **changed):
-        given = {"viscoelasticTime": 0, "removeLooseGrains": 0, "initialOverlap": 1, **changed}
-        return [row(f, radius, i, s, **given) for f, i, s in product(fillings, exponents, seeds)]
-
-    at = (REFERENCE,)
+# What the comparison leaves open: (radius, exponents, seeds, fillings, what else differs from desk).
+LONGER = {"step": LONG_STEP, "duration": "3e-6", "ending": "-3us", "folder": LONG}
+REFEREE = [
     # Is drag left on? With T_vis: paired differences of d_max and t_max.
-    drag = [
-        line
+    *(
+        (40, (REFERENCE,), range(1, 11), (filling,), {"viscoelasticTime": f"{ps}e-12", "ending": f"-T{ps}ps"})
         for filling, ps in product(FILLINGS, (1, 3, 6))
-        for line in pairs(40, at, range(1, 11), (filling,), viscoelasticTime=f"{ps}e-12", ending=f"-T{ps}ps")
-    ]
+    ),
     # Did the paper keep the grains outside the largest piece?
-    loose = pairs(40, at, range(1, 21), removeLooseGrains=1, ending="-largest")
+    (40, (REFERENCE,), range(1, 21), FILLINGS, {"removeLooseGrains": 1, "ending": "-largest"}),
     # Neighbours that start without overlap (next to none: rounding would decide at 0 which touch).
-    without = pairs(40, at, range(1, 11), initialOverlap=0.001, ending="-overlap0.001")
+    (40, (REFERENCE,), range(1, 11), FILLINGS, {"initialOverlap": 0.001, "ending": "-overlap0.001"}),
     # R = 70 of Figs 5 and 6.
-    between = pairs(70, at, range(1, 6))
+    (70, (REFERENCE,), range(1, 6), FILLINGS, {}),
     # Outcomes: sticking at 1 to 2.5 m/s. Of a pair that has also run for less the longer run counts.
-    long = {"fillings": (0.4,), "folder": LONG, "step": LONG_STEP, "duration": "3e-6", "ending": "-3us"}
+    (40, (0, 2, 4), range(1, 21), (0.4,), LONGER),
     # E* at 0.4, where tau v/delta differs most between elastic and rigid-plastic spheres, until the halves part
     # fastest.
-    slow = {"fillings": (0.4,), "step": LONG_STEP, "duration": "8e-7", "ending": "-0.8us"}
+    (80, (0, 2), range(1, 7), (0.4,), {"step": LONG_STEP, "duration": "8e-7", "ending": "-0.8us"}),
     # E* hangs on delta_offset, the line of d_max against size: the ends of the sizes, until the halves part fastest.
-    large = {"fillings": (0.4,), "step": LONG_STEP, "duration": "4e-7", "ending": "-0.4us"}
-    small = {"fillings": (0.4,), "step": LONG_STEP, "duration": "3e-7", "ending": "-0.3us"}
-    return (
-        drag
-        + loose
-        + without
-        + between
-        + pairs(40, (0, 2, 4), range(1, 21), **long)
-        + pairs(80, (0, 2), range(1, 7), **slow)
-        + pairs(80, at, range(11, 51), **large)
-        + pairs(40, at, range(21, 61), **small)
-        + pairs(60, (0, 2, 4), range(1, 11), **long)
-    )
+    (80, (REFERENCE,), range(11, 51), (0.4,), {"step": LONG_STEP, "duration": "4e-7", "ending": "-0.4us"}),
+    (40, (REFERENCE,), range(21, 61), (0.4,), {"step": LONG_STEP, "duration": "3e-7", "ending": "-0.3us"}),
+    (60, (0, 2, 4), range(1, 11), (0.4,), LONGER),
+]
+
+
+def referee():
+    """Rows of REFEREE."""
+    usual = {"viscoelasticTime": 0, "removeLooseGrains": 0, "initialOverlap": 1}
+    return [
+        row(filling, radius, i, seed, **{**usual, **changed})
+        for radius, exponents, seeds, fillings, changed in REFEREE
+        for filling, i, seed in product(fillings, exponents, seeds)
+    ]
 
 
 FIGURES = "Arakawa et al. (2024), section 3 and Figs 4 to 9: head-on collisions of equal CPE aggregates of ice grains."

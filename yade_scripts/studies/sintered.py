@@ -102,23 +102,12 @@ class Point:
         files = {"file": self.grown(seed).file(0), "projectileFile": self.grown(seed).file(1)}
         compacted = {"packing": "file", "grains": "*", "seed": "*", **files}
         slow = self.velocity == ROOT or float(self.velocity) <= FAST
-        return {
-            "description": self.name(seed),
-            **(compacted if self.growth else bcca),
-            "planar": self.planar,
-            "neck": f"{self.neck:g}",
-            "velocity": self.velocity,
-            "criticalRolling": f"{self.rolling:g}e-10",
-            "viscoelasticTime": self.drag,
-            "limit": self.limit,
-            "slidingStiffnessFactor": SLIDING,
-            "duration": DURATION if slow else DURATION_FAST,
-            "endWhenApart": 1,
-            "states": STATES,
-            "stepFraction": STEP_COMPACTED.get(self.neck, STEP) if self.growth else STEP,
-            "threads": 1,
-            "out": f"{folder}/{self.name(seed)}",
-        }
+        row = {"description": self.name(seed), **(compacted if self.growth else bcca)}
+        row |= {"planar": self.planar, "neck": f"{self.neck:g}", "velocity": self.velocity}
+        row |= {"criticalRolling": f"{self.rolling:g}e-10", "viscoelasticTime": self.drag, "limit": self.limit}
+        row |= {"slidingStiffnessFactor": SLIDING, "duration": DURATION if slow else DURATION_FAST, "endWhenApart": 1}
+        row |= {"states": STATES, "stepFraction": STEP_COMPACTED.get(self.neck, STEP) if self.growth else STEP}
+        return {**row, "threads": 1, "out": f"{folder}/{self.name(seed)}"}
 
 
 def points(necks, velocities, growth=(0,), **more):
