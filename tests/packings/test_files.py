@@ -63,7 +63,7 @@ def write(path, position, radius, **parameters):
     [
         (PAIR * (np.nan, 1, 1), [RADIUS] * 2, "'position' holds a value that is not finite"),
         (PAIR, [RADIUS, 0], "'radius' is 0 at index 1; must be > 0"),
-        (PAIR * 0.4, [RADIUS] * 2, "must be less than the smaller radius"),
+        (PAIR * 0.4, [RADIUS] * 2, "must be at most 1.1 of the equilibrium"),
         (PAIR[:1], [RADIUS], "N >= 2"),
         (PAIR * 0.99, [RADIUS] * 2, "must be at most 1.1 of the equilibrium"),
         (PAIR * 6, [6 * RADIUS] * 2, "made of grains with grainRadius = 6e-07, not 1e-07"),

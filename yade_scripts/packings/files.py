@@ -23,7 +23,6 @@ from yade_scripts.packings.packing import (
     gyration_radius,
     moved,
     surface_gaps,
-    touching,
 )
 
 SUM = "sha256"  # of a packing, among its parameters
@@ -58,22 +57,13 @@ def is_packing(path):
 
 
 def load(path):
-    """Read a packing that save() wrote; PackingError when it is none, or a grain reaches the centre of another one."""
+    """Read a packing that save() wrote; raises PackingError when it is none."""
     try:
         spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
-        packing = Packing(**spheres, seed=int(about["seed"]), parameters=dict(json.loads(about["parameters"])))
+        return Packing(**spheres, seed=int(about["seed"]), parameters=dict(json.loads(about["parameters"])))
     except (RunFolderError, ValueError, TypeError) as error:
         reason = " ".join(str(error).removeprefix(f"{path}: ").split())
         raise PackingError(f"{path}: not a packing ({reason}); must be {CONTENT}") from None
-    pairs = touching(packing.position, packing.radius, -packing.radius.min(initial=0.0))
-    overlap = -surface_gaps(packing.position, packing.radius, pairs)
-    for number in np.flatnonzero(overlap >= packing.radius[pairs].min(axis=1, initial=np.inf))[:1]:
-        first, second = pairs[number]
-        raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {overlap[number]:.3g} m; must be less than the smaller "
-            "radius"
-        )
-    return packing
 
 
 def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
@@ -116,10 +106,8 @@ def _require_material(path, packing, grain_radius, overlap, grains):
     """The file's grains must be those of the run: contacts of others would pull or press from the start on. A cpe
     packing may have been made loose on purpose (initialOverlap)."""
     stored = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
-    wanted = {
-        "grainRadius": (grain_radius, 1e-6),
-        **{name: (getattr(grains, name, None), 1e-6) for name in OF_CONTACTS},
-    }
+    wanted = {name: (getattr(grains, name, None), 1e-6) for name in OF_CONTACTS}
+    wanted["grainRadius"] = grain_radius, 1e-6
     if stored.get("packing") != "cpe":
         wanted["overlap"] = overlap, AT_REST
     for name, (value, tolerance) in wanted.items():

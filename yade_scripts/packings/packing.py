@@ -21,23 +21,12 @@ class PackingError(InputError, ValueError):
 
 @dataclass(frozen=True)
 class Packing:
-    """Spheres.
+    """Spheres."""
 
-    Attributes
-    ----------
-    position : (N, 3) array
-        Centres [m].
-    radius : (N,) array
-        [m]
-    seed : int
-    parameters : dict
-        What the packing was made from.
-    """
-
-    position: np.ndarray
-    radius: np.ndarray
+    position: np.ndarray  # (N, 3), centres [m]
+    radius: np.ndarray  # (N,) [m]
     seed: int
-    parameters: dict = field(default_factory=dict)
+    parameters: dict = field(default_factory=dict)  # what the packing was made from
 
     @property
     def grains(self):
@@ -45,8 +34,7 @@ class Packing:
 
 
 def random_stream(seed, index, *more):
-    """numpy Generator of aggregate number index of a seed; more: numbers of independent streams of the same
-    aggregate."""
+    """numpy Generator of aggregate number index of a seed; more: numbers of independent streams of the aggregate."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index, *more)))
 
 
@@ -120,8 +108,7 @@ def largest_cluster(grains, pairs):
 
 
 def largest_piece(packing):
-    """The largest connected piece of a packing, where it was; `dropped` among its parameters: how many grains are
-    gone."""
+    """The largest connected piece of a packing, where it was; its parameters count the grains that are `dropped`."""
     kept, _ = largest_cluster(packing.grains, contacts(packing))
     about = {**packing.parameters, "dropped": packing.grains - len(kept)}
     return Packing(packing.position[kept], packing.radius[kept], packing.seed, about)
@@ -148,12 +135,9 @@ def require_connected(packing):
 
 
 def description(packing):
-    """A line about a packing: grains, pieces, contacts, filling factor, radii, fractal dimension; lengths in mean
-    radii.
-
-    The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension
-    the mean slope of the number of grains about a grain from NEAREST to the radius of gyration.
-    """
+    """A line about a packing; lengths in mean radii. The filling factor is the grains' volume over that of the sphere of
+    the characteristic radius, the fractal dimension the mean slope of the number of grains about a grain from NEAREST
+    to the radius of gyration."""
     pairs, radius = contacts(packing), packing.radius.mean()
     pieces = int(fragment_labels(packing.grains, pairs).max()) + 1
     characteristic, gyration = characteristic_radius(packing), gyration_radius(packing)

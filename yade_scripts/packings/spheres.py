@@ -35,33 +35,21 @@ ATOM_STYLES = {
     "sphere": "id type diameter density x y z",
     "bpm/sphere": "id mol type diameter density x y z",
     "atomic": "id type x y z",
-    "bond": "id mol type x y z",
-    "molecular": "id mol type x y z",
     "charge": "id type q x y z",
     "full": "id mol type q x y z",
+    **dict.fromkeys(("bond", "molecular"), "id mol type x y z"),
 }
 SAMPLE = 2000  # values whose digits tell how finely a file is written
 
 
 @dataclass(frozen=True)
 class Spheres:
-    """Spheres of a file.
+    """Spheres of a file, in its unit of length."""
 
-    Attributes
-    ----------
-    position : (N, 3) array
-    radius : (N,) array or None
-        In the file's unit of length; None where the file has none.
-    about : str
-        The format, and whether there are radii.
-    unit : str or None
-        The file's own, if it names one.
-    """
-
-    position: np.ndarray
-    radius: np.ndarray | None
-    about: str
-    unit: str | None = None
+    position: np.ndarray  # (N, 3)
+    radius: np.ndarray | None  # (N,); None where the file has none
+    about: str  # the format, and whether there are radii
+    unit: str | None = None  # the file's own, if it names one
 
     @property
     def resolution(self):
