@@ -84,7 +84,7 @@ class GrainParameters(Parameters):
 
 
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
-    """Constants of a contact of two grains, where no YADE runs; a run takes them from the plugin, which a test compares.
+    """Constants of a contact of two grains, where no YADE runs. A run takes them from the plugin; a test compares.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     Returns
     -------
     dict
-        {name: value} by the plugin's names, SI; with a neck, under "bond", those of a bond of two grains of grainRadius.
+        {name: value} by the plugin's names, SI; with a neck those of a bond, of two grains of grainRadius, as "bond".
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]

@@ -71,7 +71,8 @@ def reason(parameters, limit):
         if parameters.stepFraction == limit
         else f"below the limit of stability, {limit:.3g} t0"
     )
-    return f"{parameters.stepFraction:.3g} t0 for a ledger error of at most {parameters.tolerance:g} in 95 % of runs ({why})"
+    step, most = parameters.stepFraction, parameters.tolerance
+    return f"{step:.3g} t0 for a ledger error of at most {most:g} in 95 % of runs ({why})"
 
 
 def refuse_if(wrong, what):

@@ -29,7 +29,7 @@ class AggregateParameters(GrainParameters):
     packing: str = parameter(
         "cpe",
         one_of([*MADE, "file"]),
-        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, read from file",
+        "how they are made: close-packed and extracted, cluster-cluster or particle-cluster aggregation, from file",
     )
     filling: float | None = parameter(
         None,

@@ -143,7 +143,7 @@ def _met(target, projectile, target_radii, projectile_radii, touching, stream, p
 
 
 def rbd(grains, grain_radius, overlap, overlap_with_plate, edge, seed):
-    """A layer by random ballistic deposition on the plate z = 0, as laboratories grow dust cakes (Blum & Schraepler 2004).
+    """A layer by random ballistic deposition on the plate z = 0, a dust cake of laboratories (Blum & Schraepler 2004).
 
     Grains come one by one straight down at random places of a square around the z axis that is periodic in x and y, and
     stay where they first touch another grain or the plate. Grains across an edge are there once. overlap: of two at

@@ -135,9 +135,11 @@ def require_connected(packing):
 
 
 def description(packing):
-    """A line about a packing; lengths in mean radii. The filling factor is the grains' volume over that of the sphere of
-    the characteristic radius, the fractal dimension the mean slope of the number of grains about a grain from NEAREST
-    to the radius of gyration."""
+    """A line about a packing; lengths in mean radii.
+
+    The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension
+    the mean slope of the number of grains about a grain from NEAREST to the radius of gyration.
+    """
     pairs, radius = contacts(packing), packing.radius.mean()
     pieces = int(fragment_labels(packing.grains, pairs).max()) + 1
     characteristic, gyration = characteristic_radius(packing), gyration_radius(packing)

@@ -56,8 +56,8 @@ def at_rest(position, radius, pairs, grain_radius, overlap):
 
 
 def unpressed(position, radius, pairs, grain_radius, overlap):
-    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest(). Raises PackingError
-    where one stays deeper than DEEPEST or comes apart."""
+    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest(). Raises
+    PackingError where one stays deeper than DEEPEST or comes apart."""
     rest = at_rest(position, radius, pairs, grain_radius, overlap)
     if rest.deviation.min() > -1.0 and rest.deviation.max() < DEEPEST - 1:
         return rest.position
