@@ -2,14 +2,13 @@
 
 import shutil
 import subprocess
-import warnings
 from math import pi
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from analysis.atlas.adapters.dustpy import fragments_of, use_atlas
+from analysis.atlas.adapters.dustpy import use_atlas
 from analysis.atlas.outcome_table import (
     PROBABILITIES,
     Axis,
@@ -18,8 +17,6 @@ from analysis.atlas.outcome_table import (
     read_outcomes,
     write_outcomes,
 )
-from analysis.atlas.query import outcomes_file
-from analysis.atlas.variables import GROWN
 from analysis.theory import ICE, interaction_energies, pair_constants
 
 ROOT = Path(__file__).parents[2]
@@ -243,17 +240,3 @@ def test_mass_is_conserved(sim):
     after = np.asarray(sim.dust.Sigma)[1:-1]
     assert np.abs((after - before) / before.sum(axis=1, keepdims=True)).max() > 1e-3
     np.testing.assert_allclose(after.sum(axis=1), before.sum(axis=1), rtol=1e-10)
-
-
-def test_fragments_of_dustpys_index_are_dustpys(sim):
-    np.testing.assert_allclose(fragments_of(sim.grid.m, 11 / 6), sim.dust.coagulation.phi, rtol=1e-12)
-
-
-@pytest.mark.parametrize("options", [{}, {"grain_radius": 1e-5}])
-def test_grains_of_another_size_than_meant_give_a_warning(sim, options):
-    """Of 1e-5, 0.1 um in cm, all aggregates of the start would be less than one grain."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        use_atlas(sim, outcomes_file(GROWN, averaged=True), **options)
-    lines = [str(each.message) for each in caught if "use_atlas" in str(each.message)]
-    assert len(lines) == bool(options) and all("of the collisions are at present outside" in line for line in lines)

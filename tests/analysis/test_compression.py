@@ -43,17 +43,6 @@ def test_maximum_of_a_cosine_converges_with_the_fourth_power_of_the_interval():
     assert errors[0] < 2e-5 and errors[1] < errors[0] / 8
 
 
-def test_noise_stays_within_the_stated_error():
-    random = np.random.default_rng(2)
-    time = np.linspace(0.0, 10.0, 101)
-    for _ in range(50):
-        noise = 1e-3 * random.normal(size=time.size)
-        maximum = maximum_compression(time, 5.0 - (time - 4.1) ** 2 + noise, -2.0 * (time - 4.1))
-        assert maximum.length == pytest.approx(5.0, abs=4e-3)
-        assert abs(maximum.time - 4.1) <= maximum.time_error * (1 + 1e-9) < 0.5
-        assert 0 < maximum.length_error < 1e-2
-
-
 def test_d_max_is_of_the_first_compression():
     """Aggregates that stuck creep together further, 1.3 after a first maximum of 1: that is not d_max."""
     time = np.linspace(0.0, 20.0, 2001)

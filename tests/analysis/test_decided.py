@@ -173,14 +173,6 @@ def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, 
     assert seen.if_decided(why).restitution == restitution
 
 
-def test_what_lies_on_the_plate_counts_by_its_mass():
-    """Four grains of twice the radius on the plate, and sixteen single ones that left it."""
-    radii = np.repeat([2.0, 1.0], [4, 16])
-    start, end = ({**state, "radius": radii} for state in (START, standing(UPPER_HALF, broken=[3])))
-    seen = plate_outcome(start, end, met=True)
-    assert (seen.largest_fragment, seen.growth_efficiency) == (4, pytest.approx(32 / 48, rel=1e-12))
-
-
 @pytest.mark.parametrize(
     "separation, velocity, offset, time, meets",
     [

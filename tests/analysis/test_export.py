@@ -75,10 +75,8 @@ def test_contacts_with_planes_count():
     on = np.array([[0, 0], [1, 1]])
     planes = dict(plane_axis=np.zeros(2, int), plane_position=np.array([0.0, 4e-7]), plane_contacts=on)
     force = np.array([1e-8])
-    pressed = State(
-        **{**state, **planes, "contact_normal_force": force, "plane_contact_normal_force": np.repeat(force, 2)}
-    )
-    found = Exported(pressed, None)
+    forces = {"contact_normal_force": force, "plane_contact_normal_force": np.repeat(force, 2)}
+    found = Exported(State(**{**state, **planes, **forces}), None)
     assert found.coordination().tolist() == [2, 2] and np.abs(found.normal_forces()).max() < 1e-20
 
 

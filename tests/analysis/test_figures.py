@@ -9,7 +9,6 @@ import numpy as np
 import pandas
 import pytest
 from matplotlib.colors import to_rgb
-from PIL import Image
 from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.__main__ import main
@@ -17,7 +16,6 @@ from analysis.figures.collision import force_kinds, forces_figure, grains_figure
 from analysis.figures.energy import energy_figure
 from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.figures.sphere_raster import paint_spheres
-from analysis.figures.style import new_figure, save_small
 from analysis.measures.compression import maximum_compression
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLOURS
@@ -93,20 +91,6 @@ def test_painted_spheres():
     assert np.any(image[..., 1] == 0.0)
 
 
-def test_colours_of_what_is_drawn_are_kept_in_a_small_picture(tmp_path):
-    """Blues that differ by a few parts in 255, on a background of thousands of shades."""
-    figure = new_figure(4, 3)
-    axes = figure.subplots()
-    axes.imshow(np.random.default_rng(1).random((60, 60, 3)), extent=(0, 5, -1, 1), aspect="auto")
-    blues = [(32, 100 + 3 * k, 172) for k in range(5)]
-    for k, colour in enumerate(blues):
-        axes.plot([k + 0.5], [0.0], "s", markersize=9, color=np.array(colour) / 255.0)
-    save_small(figure, tmp_path / "small.png")
-    with Image.open(tmp_path / "small.png") as picture:
-        pixels = {colour for _, colour in picture.convert("RGB").getcolors(10**6)}
-    assert set(blues) <= pixels and len(pixels) <= 256
-
-
 # ---- figures of a table of runs ----
 
 
@@ -151,16 +135,6 @@ def test_a_mean_has_the_standard_error_of_its_pairs_which_files_tell_apart_too(r
     assert drawn(plot("largest", of_files))[:2] == (points, bars)
 
 
-def test_runs_that_cannot_be_drawn_are_left_out_and_counted(runs):
-    cells = {"run": "", "kind": "compression", "ended": True, "seed": [1, 2], "finalFilling": [0.3, 0.4], "time": 1.0}
-    both = pandas.concat([runs.assign(time=2.0), pandas.DataFrame(cells)], ignore_index=True)
-    both.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "finalFilling"]}
-    assert drawn(plot("sticking", both))[:2] == drawn(plot("sticking", runs))[:2]
-    ends = runs.assign(d_max=[9.0, *[1.0] * 7], maximum_inside=[False, *[True] * 7])
-    points, _, text = drawn(plot("d_max", ends))
-    assert [y for _, y in points] == [1.0, 1.0] and "7 runs of 4 pairs, 1 left out" in text
-
-
 def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
     for how, words in (
         ({"what": "stiking"}, "did you mean sticking"),
@@ -174,14 +148,11 @@ def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
             plot(**{"what": "sticking", "runs": runs, **how})
 
 
-def test_runs_that_differ_in_something_else_are_refused_unless_it_follows_from_what_is_drawn(runs):
+def test_runs_that_differ_in_something_else_or_ran_twice_are_refused(runs):
     with pytest.raises(CannotPlot, match="^the runs differ in impact too"):
         plot("sticking", runs.assign(impact=[0.0] + [0.5] * 7))
     with pytest.raises(CannotPlot, match="a pair has several runs"):
         plot("sticking", pandas.concat([runs, runs[:1]]).assign(run="again"))
-    grown = runs.assign(grains=[16, 30] * 4, projectileGrains=[16, 30] * 4)
-    grown.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "grains", "projectileGrains"]}
-    assert len(plot("largest", grown, by="grains").axes[0].get_legend_handles_labels()[1]) == 2
 
 
 def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys):

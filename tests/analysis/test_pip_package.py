@@ -37,18 +37,3 @@ def test_the_package_needs_no_checkout(call, cluster_folder):
     assert call(sys.executable, "-c", "import analysis; print(analysis.__file__)") == "TARGET/analysis/__init__.py\n"
     assert call("dust-analysis", "--version") == f"analysis {analysis.__version__}, commit unknown\n"
     assert "sticking" in call("dust-analysis", "summary", str(cluster_folder))
-
-
-def test_no_module_that_linux_alone_has_is_needed(cluster_folder):
-    code = """import sys
-sys.modules.update(dict.fromkeys(["fcntl", "grp", "pwd", "resource", "termios", "spwd", "crypt"]))
-import os, pkgutil, importlib, analysis
-del os.sched_getaffinity
-for module in pkgutil.walk_packages(analysis.__path__, "analysis."):
-    if not module.name.endswith("__main__"):
-        importlib.import_module(module.name)
-from analysis.__main__ import main
-sys.exit(main(["summary", sys.argv[1]]))"""
-    command = [sys.executable, "-c", code, str(cluster_folder)]
-    done = subprocess.run(command, cwd=TOP, capture_output=True, text=True)
-    assert done.returncode == 0 and "sticking" in done.stdout, done.stderr

@@ -101,11 +101,9 @@ def _halve(file):
 
 DAMAGE = {
     "no such run folder": lambda f: shutil.rmtree(f),
-    "is not a folder": lambda f: (shutil.rmtree(f), f.write_text("")),
     "run.json: missing": lambda f: (f / "run.json").unlink(),
     "run.json: not valid JSON": lambda f: _halve(f / "run.json"),
     "run.json: not the record of a run": lambda f: (f / "run.json").write_text("{}"),
-    "nested too deeply": lambda f: (f / "run.json").write_text("[" * 100_000),
     "NaN is no number": changed("parameters", velocity=float("nan")),
     "format is 6": changed(format=6),
     "'derived' is missing": lambda f: _change_record(f, lambda r: r.pop("derived")),
@@ -157,25 +155,6 @@ def test_damaged_states_say_what_and_where(folder, words):
     with refused(RunFolderError, words, "000000.npz"):
         run.start
     assert run.last.radius.size == 2
-
-
-def test_a_flipped_bit_of_a_state_is_noticed_or_changes_nothing(folder):
-    """Dates and attributes of the archive are under no sum of it."""
-    file = folder / "states" / "000000.npz"
-    whole, state = file.read_bytes(), open_run(folder).start
-    noticed = 0
-    for where in range(0, len(whole), 13):
-        data = bytearray(whole)
-        data[where] ^= 1 << where % 8
-        file.write_bytes(data)
-        try:
-            found = open_run(folder).start
-        except RunFolderError as error:
-            assert "\n" not in str(error)
-            noticed += 1
-        else:
-            assert all(np.array_equal(getattr(found, q.name), getattr(state, q.name)) for q in COLLISION.states[:-1])
-    assert noticed > len(whole) / 13 / 2
 
 
 def test_the_ledger_sums_every_channel_and_closure_is_undefined_without_motion_at_the_start():

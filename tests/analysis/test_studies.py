@@ -9,10 +9,8 @@ import pytest
 from written_runs import answered, two_pairs
 
 from analysis.__main__ import main
-from analysis.runs.folder import open_run
 from analysis.studies import pages
 from analysis.studies.comparison import AGREES, DIFFERS, NOT_RUN, UNCLEAR
-from analysis.studies.figures import snapshots
 from analysis.studies.study import GALLERY, NAMES
 
 STICKS = "fraction that sticks, 2 grains, {} m/s"
@@ -88,19 +86,6 @@ def test_the_page_holds_everything_and_text_of_the_data_is_no_html(own):
     pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', text)
     assert len(pictures) == text.count("<img") == 1 and base64.b64decode(pictures[0]).startswith(b"\x89PNG")
     assert "<script>" not in text and text.count("&lt;script&gt;") >= 2 and "3 of 3" in text and str(own) not in text
-
-
-def test_snapshots_are_drawn_from_run_folders_and_from_what_is_kept(own):
-    states = [open_run(own / "runs" / "s1").states[k] for k in (0, -1)]
-    position = np.array([state.position for state in states])
-    unit = np.abs(position).max() / 32_000
-    kept = dict(time=[0.0, 1.0], unit=unit, position=np.rint(position / unit).astype(np.int16))
-    (own / "kept").mkdir()
-    np.savez(own / "kept" / "s1.npz", **kept, radius=states[0].radius, aggregate=states[0].aggregate)
-    runs = pandas.DataFrame({"run": ["s1"], "folder": [str(own / "runs" / "s1")], "grain_radius": 1e-7})
-    for table in (runs, runs.assign(folder=None)):
-        assert len(snapshots(table, own / "kept", lambda row: row.run).axes) == 2
-    assert snapshots(runs.assign(run="s2"), own / "kept", lambda row: row.run) is None
 
 
 @pytest.mark.parametrize("name", NAMES)

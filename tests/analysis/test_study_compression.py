@@ -5,12 +5,10 @@ import pandas
 import pytest
 from written_runs import PAIR, RADIUS, cubic_lattice, record, state_arrays, write_run
 
-from analysis.report.rows import table
 from analysis.runs.folder import open_run
 from analysis.runs.format import COMPRESSION
 from analysis.studies import compression as k13
 from analysis.studies.estimates import estimate, mean, where
-from analysis.studies.plot import plot
 from analysis.theory import SILICATE
 from analysis.theory.aggregates import bcca_coordination
 from analysis.theory.compression import rolling_energy
@@ -139,12 +137,3 @@ def test_bins_of_the_filling_factor_have_little_bias_and_keep_to_what_is_covered
     thin = inside & (k13.FILLINGS < 0.11)
     assert pressure[thin] == pytest.approx(SCALE * k13.FILLINGS[thin] ** 3, rel=1.2e-3)
     assert contacts[inside] == pytest.approx(bcca_coordination(k13.FILLINGS[inside]) + 0.1, rel=1e-12)
-
-
-def test_energies_of_compressions_are_parts_of_the_work_of_the_boundaries(tmp_path):
-    for seed in (1, 2):
-        made_compression(tmp_path / str(seed), seed, power(), initialFilling=0.002 * seed)
-    found = table(tmp_path)
-    assert len(plot("energy", found, x="strainRate").axes[0].lines) > 3
-    lost = (found.rollingDissipation_at_end + found.twistingDissipation_at_end).tolist()
-    assert lost == pytest.approx((-found.boundaryWork_at_end).tolist(), rel=1e-6) and lost[0] == pytest.approx(1.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas
 import pytest
-from written_runs import MASS, PAIR, RADIUS, answered, chain, losing, record, state_arrays, write_run
+from written_runs import MASS, PAIR, RADIUS, chain, losing, record, state_arrays, write_run
 
 from analysis import theory
 from analysis.runs.folder import open_run
@@ -74,22 +74,6 @@ def test_one_run(tmp_path):
     assert row["energy_unit"] == pytest.approx(PAIR.pull_off_force * PAIR.pull_off_overlap)
     ice = theory.Material(*(getattr(theory.ICE, n) for n in list(vars(theory.ICE))[:-1]), 6e-12)
     assert row["sticking_velocity"] == pytest.approx(theory.sticking_velocity(theory.pair_constants(ice, RADIUS)))
-
-
-def test_runs_of_other_scenes_grains_or_law_and_too_short_ones_are_left_out(tmp_path, capsys):
-    """Runs last 2 us; at 0.1 m/s that is a fraction of r_c. One that ended before its duration has nothing left to
-    meet."""
-    others, grains = {"neck": 0.5, "limit": "cut"}, {"criticalRolling": 8e-09, "surfaceEnergy": 0.025}
-    made_run(tmp_path / "own", VELOCITIES[0], 0.25, 0.0, 1, duration=6.34e-6)
-    made_run(tmp_path / "apart", 0.1, 0.0, 0.0, 2, duration=6.34e-6)
-    made_run(tmp_path / "short", 0.1, 0.0, 0.0, 1, duration=2e-6)
-    for name, value in others.items():
-        made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 2, **{name: value})
-    for name, value in grains.items():
-        made_run(tmp_path / name, VELOCITIES[0], 0.0, 0.0, 1, {name: value})
-    _, runs, err = answered(capsys, "viscous", tmp_path)
-    assert runs == 2 and "short: lasts 2e-06 s, too short" in err
-    assert all(f"{name} = {value}" in err for name, value in {**others, **grains}.items())
 
 
 def test_means_over_offsets_are_exact_for_one_and_for_the_square():

@@ -149,15 +149,6 @@ def test_sticking_and_rebound_with_drag_against_the_equation_as_printed(picoseco
     assert (collision.rebound_velocity, collision.duration) == pytest.approx((rebound, duration), rel=1e-6)
 
 
-def test_motion_of_a_pair_ends_in_the_same_rebound():
-    collision = theory.collide_pair(8.0, PAIR)
-    overlap, rate = theory.pair_motion(8.0, PAIR, np.array([0.0, 0.999999, 1.001]) * collision.duration)
-    assert overlap[0] == pytest.approx(0.0, abs=1e-20) and rate[0] == pytest.approx(8.0)
-    assert overlap[1] == pytest.approx(-PAIR.pull_off_overlap, rel=1e-4)
-    assert rate[1] == pytest.approx(-collision.rebound_velocity, rel=1e-4)
-    assert np.isnan(overlap[2]) and np.isnan(rate[2])
-
-
 # ---- aggregates: K13, T23, A24, S17 ----
 
 
@@ -182,7 +173,7 @@ def test_numbers_of_k13():
     assert static_from(3e-7, 16384, 0.6e-6, unit, energy, mass) == pytest.approx(0.034, rel=0.02)
 
 
-def test_formulae_for_any_filling():
+def test_strength_of_dense_aggregates_is_k13s_where_they_are_thin_and_t23s_else():
     thin, dense = 1e-4, 0.6
     assert compressive_strength_dense(thin, SCALE) == pytest.approx(compressive_strength(thin, SCALE), rel=1e-3)
     assert compressive_strength_dense(dense, 0.47e6) == pytest.approx(float(aggregates.bcca_strength(dense)), rel=1e-12)

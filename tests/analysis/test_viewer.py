@@ -20,14 +20,10 @@ webdriver = pytest.importorskip("selenium.webdriver") if shutil.which("chromedri
 in_browser = pytest.mark.skipif(webdriver is None, reason="chromium is not installed (make test-viewer installs it)")
 
 
-def _page(run):
-    assert main(["view", str(run)]) == 0
-    return run / "view.html"
-
-
 def test_the_page_holds_the_states_and_reaches_for_nothing(tmp_path):
     run = two_clusters(tmp_path / "</script><b>x")
-    page = _page(run).read_text()
+    assert main(["view", str(run)]) == 0
+    page = (run / "view.html").read_text()
     data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
     states = open_run(run).states
     middle = (states[0].position.min(axis=0) + states[0].position.max(axis=0)) / 2
@@ -37,16 +33,15 @@ def test_the_page_holds_the_states_and_reaches_for_nothing(tmp_path):
     assert not re.search(r'<(script|link|img)[^>]*(src|href)="', page) and "<b>x" not in page
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def browser():
     options = webdriver.ChromeOptions()
     software = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
     for option in ["--headless=new", "--no-sandbox", "--window-size=800,600", *software]:
         options.add_argument(option)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options=options)
-    yield driver
-    driver.quit()
+    with webdriver.Chrome(options=options) as driver:
+        yield driver
 
 
 def _shown(driver, number):
@@ -59,7 +54,9 @@ def _shown(driver, number):
 
 @in_browser
 def test_a_browser_draws_turns_and_goes_through_the_states(tmp_path, browser):
-    browser.get(_page(two_clusters(tmp_path / "run")).as_uri())
+    run = two_clusters(tmp_path / "run")
+    assert main(["view", str(run)]) == 0
+    browser.get((run / "view.html").as_uri())
     first = _shown(browser, 0)
     browser.execute_script("let s = document.getElementById('slider'); s.value = 11; s.oninput();")
     last = _shown(browser, 11)

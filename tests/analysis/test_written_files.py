@@ -3,14 +3,11 @@ analysis writes is whole or not there, and never in the place of what it reads."
 
 import os
 import shutil
-import signal
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
-from written_runs import flip, two_pairs, unseal
+from written_runs import flip, unseal
 
 from analysis import table
 from analysis.__main__ import main
@@ -85,20 +82,6 @@ def test_content_is_on_the_disk_before_it_takes_the_name(tmp_path, monkeypatch):
         monkeypatch.setattr(os, name, lambda *given, name=name, real=real: (calls.append(name), real(*given))[1])
     write_file(tmp_path / "page.html", "new")
     assert calls == ["fsync", "replace", "fsync"]
-
-
-@pytest.mark.skipif(not shutil.which("ffmpeg"), reason="ffmpeg is not installed")
-def test_a_film_that_is_stopped_leaves_nothing(own):
-    two_pairs(own / "runs" / "long", 3.0, 9, how={"states": 400})
-    command = [sys.executable, "-m", "analysis", "film", str(own / "runs" / "long"), "--out", str(own / "film.mp4")]
-    before = set(own.iterdir())
-    process = subprocess.Popen(command, cwd=TOP, stderr=subprocess.PIPE, text=True)
-    while set(own.iterdir()) == before:
-        assert process.poll() is None
-        time.sleep(0.001)
-    process.terminate()
-    assert process.communicate(timeout=60)[1] == "" and process.returncode == 128 + signal.SIGTERM
-    assert set(own.iterdir()) == before
 
 
 def test_files_of_others_and_what_is_read_are_not_written_over(own, capsys, monkeypatch):

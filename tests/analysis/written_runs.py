@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import re
 from math import pi
 
 import numpy as np
@@ -23,8 +22,8 @@ def record(aggregate_radius, parameters=None, **others):
     differ, or are more."""
     material = {"young": ICE.young, "poisson": ICE.poisson, "surfaceEnergy": ICE.surface_energy, "density": ICE.density}
     material |= {"criticalRolling": ICE.critical_rolling, "viscoelasticTime": 0.0}
-    pair = "equilibriumContactRadius equilibriumOverlap pullOffOverlap pullOffForce timeUnit".split()
-    pair = {name: getattr(PAIR, re.sub("([A-Z])", r"_\1", name).lower()) for name in pair}
+    pair = {"equilibriumContactRadius": PAIR.equilibrium_contact_radius, "equilibriumOverlap": PAIR.equilibrium_overlap}
+    pair |= {"pullOffOverlap": PAIR.pull_off_overlap, "pullOffForce": PAIR.pull_off_force, "timeUnit": PAIR.time_unit}
     derived = {**material, "grainRadius": RADIUS, "grainMass": MASS, **pair, "timeStep": 0.1 * PAIR.time_unit}
     derived |= {"steps": 0, "aggregateRadius": aggregate_radius, "grainsPerAggregate": 1, **others}
     about = {"format": FORMAT, "kind": "collision", "parameters": parameters or {"material": "ice"}, "derived": derived}
@@ -89,12 +88,9 @@ def state_arrays(time, position, velocity, aggregate, pairs=()):
     """A state's dict; position, velocity (N,3), aggregate (N,), pairs (M,2)."""
     position = np.asarray(position, dtype=float)
     pairs = np.asarray(pairs, dtype=int).reshape(-1, 2)
-    grains = {
-        "position": position,
-        "velocity": np.asarray(velocity, dtype=float),
-        "radius": np.full(len(position), RADIUS),
-    }
-    grains |= {"angular_velocity": np.zeros_like(position), "aggregate": np.asarray(aggregate, dtype=int)}
+    grains = {"position": position, "velocity": np.asarray(velocity, dtype=float)}
+    grains |= {"radius": np.full(len(position), RADIUS), "angular_velocity": np.zeros_like(position)}
+    grains |= {"aggregate": np.asarray(aggregate, dtype=int)}
     contacts = {"contact_normal_force": np.zeros(len(pairs)), "contact_bonded": np.zeros(len(pairs), dtype=bool)}
     return {"time": time, **grains, "contact_pairs": pairs, **contacts}
 

@@ -1,11 +1,8 @@
 """The engine of a 64-bit ARM beside this machine's: the same bits, without vectors. Run by `make test-arm64`.
 
-    python3 tests/drivers/arm64.py      some minutes; most is compiling
-
-The last commit is cloned into build/arm64 and compiled there by Debian's cross compiler, without YADE; qemu runs it.
-Scenes are made with this machine's own build. An emulator on x86 orders memory as x86 does: what a race of threads
-would do on a real ARM, the sanitizer of threads has to find. Prints a table, and keeps it in build/arm64.md.
-Exit status: 0 when all bits are the same, otherwise 1.
+The last commit is compiled in build/arm64 by Debian's cross compiler, without YADE; qemu runs it. An emulator on x86
+orders memory as x86 does: races of threads are the sanitizer's to find. Writes build/arm64.md; exit status 0 when all
+bits are the same.
 """
 
 import os

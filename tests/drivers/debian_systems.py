@@ -3,9 +3,8 @@
     python3 tests/drivers/debian_systems.py bookworm trixie      [--commands 'make demo' ...]
     python3 tests/drivers/debian_systems.py bookworm-arm64       another processor, emulated (qemu-user-static)
 
-A system is made by debootstrap with the mirror of this system's apt, and removed afterwards; each runs in mount and
-process namespaces of its own. What is tested is the last commit. Prints a line a command, and keeps them in
-build/debian.md. Exit status: 0 when every command of every system succeeded, otherwise 1.
+A system is made by debootstrap with the mirror of this system's apt, and removed afterwards. What is tested is the last
+commit. Writes build/debian.md; exit status 0 when every command of every system succeeded.
 """
 
 import argparse

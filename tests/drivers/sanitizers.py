@@ -1,13 +1,9 @@
 """The sanitizers of addresses, undefined behaviour and threads on the engine, the kernel, the functors and checkpoints.
 
-    python3 tests/drivers/sanitizers.py      a quarter of an hour on two cores; run by make test-sanitizers
-
-The last commit is cloned into build/sanitizers and compiled there once for each. Compiled by clang, as g++ takes more
-than ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was. Threads are tried in the
-harness alone, where clang's OpenMP tells the sanitizer when a parallel region begins and ends (Archer); YADE's does
-not, and every region would be a finding. YADE itself is not instrumented: what it does with memory that the plugin
-gave it shows only where it calls malloc, free or memcpy. Prints a table, and keeps it in build/sanitizers.md.
-Exit status: 0 when nothing was found and all passed, otherwise 1.
+Run by make test-sanitizers, a quarter of an hour on two cores. The last commit is compiled in build/sanitizers, once for
+each: by clang, as g++ takes ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was.
+Threads are tried in the harness alone, where clang's OpenMP tells the sanitizer when a parallel region begins and ends
+(Archer). YADE itself is not instrumented. Writes build/sanitizers.md; exit status 0 when nothing was found.
 """
 
 import os

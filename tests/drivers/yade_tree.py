@@ -1,8 +1,7 @@
 """The plugin compiled against YADE's own headers, and loaded. Run by `make yade-tree`.
 
-Downloads the source of the YADE that is installed from Debian's archive (14 MB; Debian 13 has it), clones the last
-commit into build/yade-tree, compiles it there with YADE_INCLUDE, and runs an example and tests with the result.
-Exit status: 0, or 1 with one line on stderr that says which step failed.
+Downloads the source of the YADE that is installed from Debian's archive (14 MB; Debian 13 has it), compiles the last
+commit in build/yade-tree with YADE_INCLUDE, and runs an example and tests with the result.
 """
 
 import os

@@ -14,12 +14,7 @@ IN_YADE = pytest.mark.in_yade
 
 
 class Found(ctypes.Structure):
-    _fields_ = [
-        ("file", ctypes.c_char_p),
-        ("base", ctypes.c_void_p),
-        ("name", ctypes.c_char_p),
-        ("at", ctypes.c_void_p),
-    ]
+    _fields_ = list(zip(("file", "base", "name", "at"), 2 * (ctypes.c_char_p, ctypes.c_void_p)))
 
 
 def virtual_functions(class_name):
