@@ -34,7 +34,7 @@ from analysis.signals import end_quietly
 
 end_quietly(signal.SIGINT)
 require_libraries()
-from analysis.printable import meant, printable
+from analysis.printable import meant, printable, shell_line
 from analysis.version import version_text
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.loop import StopSignals
@@ -95,25 +95,33 @@ def place_of(table):
     return next((place for place in places if (place / LOGS / Path(table).stem).is_dir()), places[0])
 
 
-def submit(study, at_once, sbatch, dry_run):
+def submit(study, options):
     """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
     states, queued = study.states_with_queue(sure=True)
     refused = {row.name: reason for row in study.rows if (reason := refusal(row))}
     for name, reason in refused.items():
         tell(f"{name}: {reason}; the other rows are submitted", SCRIPT)
-    may_run = [state.kind in (WAITING, FAILED) and row.name not in refused for row, state in zip(study.rows, states)]
-    left = [row for row, wanted, there in zip(study.rows, may_run, queued) if wanted and not there]
-    slurm.require_usable(study.folder)
-    if dry_run:
+    left = [
+        row
+        for row, state, there in zip(study.rows, states, queued)
+        if state.kind in (WAITING, FAILED) and row.name not in refused and not there
+    ]
+    jobs = slurm.jobs(study.folder, left, options.jobs)
+    if options.dry_run:
         if not left:
             tell("all rows have ended, or are in the queue: nothing to submit", SCRIPT)
-        print("\n".join(slurm.scripts(study.folder, left, at_once, sbatch)), end="")
+        texts = [f"{script}# {shell_line(slurm.command(folder, options.sbatch))}\n" for folder, _, _, script in jobs]
+        print("\n".join(texts), end="")
         return int(bool(refused))
-    for job, group, tasks in slurm.submit(study.folder, left, at_once, sbatch):
-        print(f"Slurm job {job}: {len(group)} rows in {tasks} tasks, {group[0].threads} threads each", flush=True)
-    counts = [f"{sum(state.kind == kind for state in states)} {kind}" for kind in (DONE, RUNNING)]
-    counts += [f"{len(refused)} failed, {sum(queued)} in the queue before, {len(left)} submitted"]
-    print(f"{printable(study.name)}: {len(states)} rows, {', '.join(counts)}")
+    study.folder.remove_logs(left)
+    for folder, rows, tasks, script in jobs:
+        job = slurm.submit(folder, rows, tasks, script, options.sbatch)
+        print(f"Slurm job {job}: {len(rows)} rows in {tasks} tasks, {rows[0].threads} threads each", flush=True)
+    done, running = (sum(state.kind == kind for state in states) for kind in (DONE, RUNNING))
+    print(
+        f"{printable(study.name)}: {len(states)} rows, {done} done, {running} running, {len(refused)} failed, "
+        f"{sum(queued)} in the queue before, {len(left)} submitted"
+    )
     return int(bool(refused))
 
 
@@ -195,7 +203,7 @@ def main(arguments):
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
-            return submit(study, options.jobs, options.sbatch, options.dry_run)
+            return submit(study, options)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
         tell(f"{error}{hint(table)}", SCRIPT)
         return 2

@@ -115,16 +115,15 @@ def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
 
 
 STOPS = """
-import signal, sys, time
-def hear(*_):
-    print("TERM", flush=True)
-    DEAF and signal.signal(signal.SIGTERM, signal.SIG_DFL)  # as a run is after the first
-    DEAF or sys.exit(143)
-signal.signal(signal.SIGTERM, hear)
+import sys, time
+from yade_scripts.run.loop import StopSignals
+stop = StopSignals()
 print("begun", flush=True)
-for _ in range(40 if DEAF else 3000):
+while not stop.received:
     time.sleep(0.02)
-sys.exit(143)
+time.sleep(0.5)
+print("checkpoint", flush=True)
+sys.exit(128 + stop.received)
 """
 
 
@@ -137,47 +136,23 @@ def signals():
         signal.signal(number, handler)
 
 
-@pytest.fixture
-def begin(tmp_path, signals):
-    """begin(script) -> a Task that runs it in a worker, the exit status to come, and the log."""
-    log, script = tmp_path / "a.log", tmp_path / "script.py"
-    task = slurm.Task()
-
-    def begin(text):
-        script.write_text(text)
-        log.unlink(missing_ok=True)
-        row = rows.StudyRow("a", {}, str(script), KIND, KIND.parse({"threads": "2", "out": "run"}))
-        running = ThreadPool(1).apply_async(task._run, (row, str(log)))
-        return task, running, log
-
-    yield begin
+@pytest.mark.parametrize(
+    "number, to_all", [(signal.SIGUSR1, False), (signal.SIGTERM, False), (signal.SIGTERM, True)], ids=str
+)
+def test_a_signal_has_the_run_write_its_checkpoint(tmp_path, signals, number, to_all):
+    """One to the task alone, or to all processes of the job."""
+    log, script, task = tmp_path / "a.log", tmp_path / "script.py", slurm.Task()
+    script.write_text(STOPS)
+    row = rows.StudyRow("a", {}, str(script), KIND, KIND.parse({"threads": "2", "out": "run"}))
+    running = ThreadPool(1).apply_async(task._run, (row, str(log)))
+    lines = lambda: log.read_text().splitlines() if log.exists() else []
+    wait_for(lambda: "begun" in lines() and task._worker.run)
+    for process in (task._worker.process.pid, task._worker.run) if to_all else ():
+        os.kill(process, number)
+    os.kill(os.getpid(), number)
+    assert running.get(60) == 143 and task.limit_is_near == (number == signal.SIGUSR1)
+    assert lines()[-1] == "checkpoint"
     task._worker.close()
-
-
-def told(log):
-    return [line for line in log.read_text().splitlines() if line in ("begun", "TERM")]
-
-
-@pytest.mark.parametrize("number, near", [(signal.SIGUSR1, True), (signal.SIGTERM, False)], ids=["limit", "SIGTERM"])
-def test_a_signal_to_the_task_alone_is_passed_on_once(begin, monkeypatch, number, near):
-    monkeypatch.setattr(slurm, "ALL_SIGNALLED", 0.2)
-    for deaf in (False, True):
-        task, running, log = begin(f"DEAF = {deaf}" + STOPS)
-        wait_for(lambda: log.exists() and told(log))
-        task._since = None
-        os.kill(os.getpid(), number)
-        assert running.get(60) == 143 and task.limit_is_near == near
-        assert told(log) == ["begun", "TERM"] and "SUMMARY" not in log.read_text()  # once, and it has not failed
-
-
-def test_a_signal_to_all_of_the_job_is_not_passed_on(begin, monkeypatch):
-    """Passed on, it would end the run, which has handled one, without its checkpoint."""
-    monkeypatch.setattr(slurm, "ALL_SIGNALLED", 0.2)
-    task, running, log = begin("DEAF = True" + STOPS)
-    wait_for(lambda: log.exists() and told(log) and task._worker.run)
-    for process in (task._worker.process.pid, task._worker.run, os.getpid()):
-        os.kill(process, signal.SIGTERM)
-    assert running.get(60) == 143 and told(log) == ["begun", "TERM"]
 
 
 @pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])

@@ -12,13 +12,11 @@ MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
 
 class Estimate(NamedTuple):
-    """What a run is about to take: number of grains, mean number of contacts, small steps until its end; which share
-    of all that fit into its duration these are."""
+    """What a run is about to take: number of grains, mean number of contacts, small steps until its end."""
 
     grains: float
     contacts: float
     steps: float
-    share: float = 1.0
 
 
 @dataclass(frozen=True)

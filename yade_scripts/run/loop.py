@@ -60,7 +60,8 @@ def progress_bar(total, already=0, stream=sys.stderr):
 
 
 class StopSignals:
-    """Keeps the first of these signals in .received; a second one acts as it would have without this."""
+    """Keeps the first of these signals in .received. A second Ctrl-C acts as it would have without this; others are
+    passed over, since a batch system may send one to each process of a job."""
 
     def __init__(self, numbers=(signal.SIGINT, signal.SIGTERM)):
         self.received = 0
@@ -71,5 +72,6 @@ class StopSignals:
             signal.signal(number, handler)
 
     def _note(self, number, _frame):
-        self.received = number
-        self.restore()
+        self.received = self.received or number
+        if signal.SIGINT in self._before:
+            signal.signal(signal.SIGINT, self._before[signal.SIGINT])

@@ -1,6 +1,6 @@
 """A study as job arrays of Slurm: a task for each row that is left, or for several short ones.
 
-Each call of submit() makes folders slurm-N below the study's: rows.table with the rows as they are now, of which task
+Each job has a folder slurm-N below the study's: rows.table with the rows as they are now, of which task
 k of T has the k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T;
 k.out, what a task printed. The logs of the runs are where a local runner has them. A task is run by Slurm:
 
@@ -17,7 +17,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import time
 from contextlib import suppress
 from itertools import groupby
 from math import ceil
@@ -26,7 +25,7 @@ from multiprocessing.connection import wait
 if __name__ == "__main__":
     sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 
-from analysis.printable import printable, shell_line
+from analysis.printable import printable
 from analysis.runs.files import RunFolderError, write_file
 from analysis.runs.lock import states_of_job, this_job, why_unknown
 from yade_scripts.parameters.errors import one_line_errors, tell
@@ -42,7 +41,6 @@ LARGEST = 1000  # tasks of an array, by Slurm's default MaxArraySize
 SHORT, TASK = 60, 600  # s that a row may take to share a task with others, and that these take together, roughly
 OVER = "COMPLETED CANCELLED FAILED TIMEOUT NODE_FAIL BOOT_FAIL DEADLINE OUT_OF_MEMORY PREEMPTED".split()
 POLL = 0.1  # s
-ALL_SIGNALLED = 2.0  # s in which Slurm's SIGTERM to all processes of a job has reached the run
 _FOLDER = re.compile(r"slurm-(\d+)")
 
 
@@ -67,17 +65,27 @@ def _uniform(row):
     return row.threads, (row.expected_seconds or SHORT) < SHORT
 
 
-def job_script(study_folder, folder, group, tasks, at_once=None):
-    """Text of the script of an array of so many tasks, of rows that take as many processors each.
+def jobs(study_folder, left, at_once=None):
+    """[(folder, rows, number of tasks, text of the script) of each job array]; nothing is written.
 
-    study_folder: batch.StudyFolder; folder: path of the slurm-N; at_once: tasks of it at once at most (None: as Slurm
-    likes)."""
+    study_folder: batch.StudyFolder; left: rows; at_once: tasks of an array at once, at most (None: as Slurm likes).
+    Raises SlurmError for a study whose name a job can't have."""
     name = os.path.basename(study_folder.path)
+    if name != file_name(name):
+        raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
+    found, first = [], max(_numbers(study_folder), default=0) + 1
+    for number, (group, tasks) in enumerate(arrays(left), first):
+        folder = study_folder.file(f"slurm-{number}")
+        found.append((folder, group, tasks, _script(name, folder, group[0].threads, tasks, at_once)))
+    return found
+
+
+def _script(name, folder, threads, tasks, at_once):
     task = shlex.join([sys.executable, os.path.abspath(__file__), os.path.join(folder, ROWS)])
     return f"""#!/bin/sh
 #SBATCH --job-name={name}
 #SBATCH --array=1-{tasks}{f"%{at_once}" if at_once else ""}
-#SBATCH --cpus-per-task={group[0].threads}
+#SBATCH --cpus-per-task={threads}
 #SBATCH --signal=B:USR1@{BEFORE_THE_LIMIT}
 #SBATCH --requeue
 #SBATCH --open-mode=append
@@ -86,19 +94,25 @@ exec {task} "$SLURM_ARRAY_TASK_ID" {tasks}
 """
 
 
-def require_usable(study_folder):
-    """Raise SlurmError for a name that a job can't have."""
-    name = os.path.basename(study_folder.path)
-    if name != file_name(name):
-        raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
+def command(folder, options):
+    """How the job in a folder is submitted; options: of sbatch."""
+    return ["sbatch", "--parsable", *options, os.path.join(folder, SCRIPT)]
 
 
-def submit(study_folder, left, at_once=None, options=()):
-    """Submit rows; yields (Slurm's number of a job, its rows, how many tasks they are). options: of sbatch. Raises
-    SlurmError and OSError."""
-    for group, tasks in arrays(left):
-        study_folder.remove_logs(group)
-        yield _submit(study_folder, group, tasks, at_once, options), group, tasks
+def submit(folder, group, tasks, script, options=()):
+    """Submit one of jobs(); Slurm's number of it. Raises SlurmError and OSError."""
+    os.makedirs(folder)
+    rows.write(os.path.join(folder, ROWS), group)
+    write_file(os.path.join(folder, SCRIPT), script)
+    try:
+        done = subprocess.run(command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    except FileNotFoundError:
+        raise SlurmError("sbatch: not found; must be on a machine that submits to Slurm") from None
+    job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
+    if done.returncode or not job.isdecimal():
+        raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
+    write_file(os.path.join(folder, JOB), f"{job} {tasks}\n")
+    return job
 
 
 def queued(study_folder, sure=False):
@@ -122,38 +136,6 @@ def queued(study_folder, sure=False):
             if states.get(task, OVER[0]) not in OVER:
                 found[name] = task, states[task]
     return found
-
-
-def scripts(study_folder, left, at_once=None, options=()):
-    """Texts of what submit() would submit, each with the command as a comment."""
-    first, groups = _next_number(study_folder), arrays(left)
-    folders = [study_folder.file(f"slurm-{number}") for number in range(first, first + len(groups))]
-    texts = (job_script(study_folder, folder, *group, at_once) for folder, group in zip(folders, groups))
-    return [f"{text}# {shell_line(_command(folder, options))}\n" for text, folder in zip(texts, folders)]
-
-
-def _submit(study_folder, group, tasks, at_once, options):
-    folder = study_folder.file(f"slurm-{_next_number(study_folder)}")
-    os.makedirs(folder)
-    rows.write(os.path.join(folder, ROWS), group)
-    write_file(os.path.join(folder, SCRIPT), job_script(study_folder, folder, group, tasks, at_once))
-    try:
-        done = subprocess.run(_command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
-    except FileNotFoundError:
-        raise SlurmError("sbatch: not found; must be on a machine that submits to Slurm") from None
-    job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
-    if done.returncode or not job.isdecimal():
-        raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
-    write_file(os.path.join(folder, JOB), f"{job} {tasks}\n")
-    return job
-
-
-def _command(folder, options):
-    return ["sbatch", "--parsable", *options, os.path.join(folder, SCRIPT)]
-
-
-def _next_number(study_folder):
-    return max(_numbers(study_folder), default=0) + 1
 
 
 def _numbers(study_folder):
@@ -181,18 +163,18 @@ def main(arguments):
 
 
 class Task:
-    """Runs rows; notes the signals that this process has had, whether there is something .left, and whether it
-    .came_further."""
+    """Runs rows until a signal comes. .limit_is_near: it was SIGUSR1; .came_further: whether a run has come further;
+    .left: whether there is something left to do."""
 
     def __init__(self):
-        self.limit_is_near = self.came_further = self.left = False
-        self._worker = self._since = None
+        self.stopped = self.limit_is_near = self.came_further = self.left = False
+        self._worker = None
         for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._note)
 
     def run(self, row, log):
         """Run a row unless it has ended, must not be run, or a signal has come; the exit status."""
-        if self._since is not None:
+        if self.stopped:
             self.left = True
             return 0
         refused, before = rows.refusal(row), rows.state(row, log)
@@ -217,35 +199,17 @@ class Task:
         if not self._worker or not self._worker.is_alive():
             self._worker = Worker(log)
         self._worker.begin(row, log)
+        told = False
         while (status := self._worker.poll()) is None:
             wait([self._worker.connection], POLL)
-            self._pass_on()
+            if self.stopped and not told:
+                self._worker.stop()
+                told = True
         return status
 
     def _note(self, number, _frame):
+        self.stopped = True
         self.limit_is_near |= number == signal.SIGUSR1
-        self._since = self._since or time.monotonic()
-
-    def _pass_on(self):
-        """SIGTERM to the run, once: a second one would end it without its checkpoint. SIGUSR1 comes to this process
-        alone, others as a rule to all of the job: then the run handles them no more."""
-        delay = 0.0 if self.limit_is_near else ALL_SIGNALLED
-        if self._since is not None and time.monotonic() > self._since + delay:
-            handles = _handles(self._worker.run, signal.SIGTERM)
-            if handles:
-                self._worker.stop()
-            if handles or not self.limit_is_near:  # otherwise it hasn't begun to handle them
-                self._since = float("inf")
-
-
-def _handles(pid, number):
-    """Whether a process has a handler for a signal, so that it hasn't had it yet (run.stop_signals)."""
-    try:
-        with open(f"/proc/{pid}/status") as lines:
-            caught = next(int(line.split()[1], 16) for line in lines if line.startswith("SigCgt"))
-    except (OSError, StopIteration):
-        return False
-    return bool(caught >> (number - 1) & 1)
 
 
 def _queue_again():

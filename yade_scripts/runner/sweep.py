@@ -91,25 +91,17 @@ def _rows(kind, script, parameters, folder):
     for name in OURS:
         if name in parameters:
             raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
-    rows, folder = {}, _text("folder", folder)
+    rows, folder, columns = {}, _text("folder", folder), kind.parameters.columns()
     for values in product(*map(_listed, parameters, parameters.values())):
-        cells = {name: _text(name, value) for name, value in zip(parameters, values) if value is not None}
-        _require_no_truths(kind, dict(zip(parameters, values)))
+        given = {name: value for name, value in zip(parameters, values) if value is not None}
+        cells = {name: _text(name, value, columns.get(name)) for name, value in given.items()}
         out = os.path.basename(kind.parse(cells).out)
         if out in rows:
-            given = " ".join(map("=".join, cells.items()))
-            raise ParameterError(f"{given}: given twice (run folder {out}); must be given once")
+            words = " ".join(map("=".join, cells.items()))
+            raise ParameterError(f"{words}: given twice (run folder {out}); must be given once")
         place = {"out": os.path.join(folder, out), "!SCRIPT": f"yade_scripts/{script}"}
         rows[out] = {"description": out, **cells, **place}
     return list(rows.values())
-
-
-def _require_no_truths(kind, values):
-    """Raise ParameterError for True or False as a number or a name; where 0 or 1 is wanted they are these."""
-    for name, column in kind.parameters.columns().items():
-        if isinstance(values.get(name), bool) and column.check is not SWITCH:
-            what = "a name" if column.kind is str else "a number"
-            raise ParameterError(f"{name} = {values[name]}: not {what}; {column.must}")
 
 
 def _listed(name, value):
@@ -124,9 +116,9 @@ def _listed(name, value):
     return values
 
 
-def _text(name, value):
-    """A value as the cell of a table."""
-    text = str(int(value)) if isinstance(value, bool) else str(value)
+def _text(name, value, column=None):
+    """A value as the cell of a table; True and False stand for 1 and 0 where the parameter's column is a switch."""
+    text = str(int(value)) if isinstance(value, bool) and column and column.check is SWITCH else str(value)
     if not text or text in ("=", "*") or any(c.isspace() or c == "#" for c in text):
         raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be without blanks and #")
     return text
