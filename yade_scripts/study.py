@@ -17,8 +17,7 @@ With --slurm each row that is left is one task, or short ones share one. A minut
 its checkpoint and is queued again. --dry-run prints the scripts, and submits nothing.
 
 Exit status: 0 when every row has ended (--slurm: is submitted), 1 when a row failed (one line on stderr for each; the
-others have run) or the table was edited meanwhile, 2 for a table that can't be used, 128 and the signal's number when
-stopped.
+others have run), 2 for a table that can't be used, 128 and the signal's number when stopped.
 """
 
 import argparse
@@ -48,7 +47,7 @@ from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
 POLL = 1.0  # s, for what runs elsewhere
-HEAR_SIGNALS = 0.1  # s
+HEAR_SIGNALS = 0.1  # s, while runs are at work
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -71,22 +70,6 @@ def parse_arguments(arguments):
     if options.status and options.slurm:
         parser.error("--status: must be given without --slurm")
     return options
-
-
-def find_table(table):
-    """The file named, or else the table of that name that comes with this, which is written where it isn't there."""
-    return table if os.path.exists(table) else tables.find(table) or table
-
-
-def hint(table):
-    """' (did you mean ...?)' for a table that isn't there, or ''."""
-    folder, name = os.path.split(table)
-    if os.path.exists(table):
-        return ""
-    place = folder or os.curdir
-    found = [each for each in os.listdir(place) if each.endswith(".table")] if os.path.isdir(place) else []
-    found += [] if folder else [f"{own}.table" for own in tables.names()]
-    return meant(name.removesuffix(".table") + ".table", found, os.path.join(folder, ""))
 
 
 def place_of(table):
@@ -137,7 +120,7 @@ def run(study, stop):
             _run_batch(study, left, screen, stop)
         elif any(state.kind == RUNNING for state in states):
             _draw(study, screen)
-            _wait(stop)
+            time.sleep(POLL)
         else:
             break
     screen.close()
@@ -158,12 +141,6 @@ def _draw(study, screen):
     screen.draw_if_due(lambda: live_table(study.name, study.rows, study.states_with_queue()[0], study.jobs))
 
 
-def _wait(stop):
-    until = time.monotonic() + POLL
-    while time.monotonic() < until and not stop.received:
-        time.sleep(HEAR_SIGNALS)
-
-
 def close(study, stop):
     """Print how it went; the exit status."""
     states = study.states()
@@ -174,9 +151,6 @@ def close(study, stop):
     stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
     for row in () if stop.received else stopped:
         tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
-    edited = study.has_been_edited()
-    if edited:
-        tell(f"{study.table}: was edited since its rows were read; another call runs what is new", SCRIPT)
     done = sum(state.kind == DONE for state in states)
     print(
         f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
@@ -185,13 +159,15 @@ def close(study, stop):
     )
     if stop.received:
         return 128 + stop.received
-    return 0 if done == len(states) and not edited else 1
+    return 0 if done == len(states) else 1
 
 
 def main(arguments):
     options = parse_arguments(arguments)
+    table = options.table
     try:
-        table = find_table(options.table)
+        if not os.path.exists(table):
+            table = tables.find(table) or table  # one of the suite, which is written
         if options.status and place_of(table) != Path.cwd():
             place, table = place_of(table), os.path.abspath(table)
             os.chdir(place)
@@ -205,7 +181,7 @@ def main(arguments):
         if options.slurm:
             return submit(study, options)
     except (TableError, StudyBusy, slurm.SlurmError) as error:
-        tell(f"{error}{hint(table)}", SCRIPT)
+        tell(f"{error}{'' if os.path.exists(table) else meant(table, tables.names())}", SCRIPT)
         return 2
     except OSError as error:
         tell(f"{error.filename}: {error.strerror}", SCRIPT)

@@ -76,23 +76,6 @@ def make_folder(path):
     os.makedirs(path, exist_ok=True)
 
 
-def make_new(path, content):
-    """Make a file with its bytes at once; FileExistsError where there is one: of several processes one makes it."""
-    temporary = _temporary(path)
-    try:
-        with open(temporary, "xb") as file:
-            file.write(content)
-        os.link(temporary, path)
-    except OSError as error:
-        if error.errno not in (errno.EPERM, errno.EOPNOTSUPP, errno.ENOSYS):
-            raise
-        with open(path, "xb") as file:  # on a disk without hard links
-            file.write(content)
-    finally:
-        with suppress(OSError):
-            os.unlink(temporary)
-
-
 def _temporary(path, ending=""):
     folder, name = os.path.split(path)
     return os.path.join(folder, f".{name}.{secrets.token_hex(4)}.unfinished{ending}")

@@ -245,24 +245,11 @@ def read_state(file, kind=COLLISION, file_format=READABLE[-1], sha256=None):
     if grains == 0:
         raise RunFolderError(f"{file}: holds no grain")
     if pairs.size and (pairs.min() < 0 or pairs.max() >= grains):
-        raise RunFolderError(
-            f"{file}: 'contact_pairs' names grain {pairs.max() if pairs.min() >= 0 else pairs.min()}, "
-            f"there are grains 0 to {grains - 1}"
-        )
-    _require_on_planes(file, arrays)
+        raise RunFolderError(f"{file}: 'contact_pairs' must be of grains 0 to {grains - 1}")
     if aggregate.min() < 0 or (kind.aggregates and aggregate.max() >= kind.aggregates):
         numbers = " or ".join(map(str, range(kind.aggregates))) if kind.aggregates else "0 or more"
         raise RunFolderError(f"{file}: 'aggregate' must be {numbers} for every grain")
     return State(**arrays)
-
-
-def _require_on_planes(file, arrays):
-    if "plane_contacts" not in arrays:
-        return
-    for column, (what, quantity) in enumerate((("grain", "radius"), ("plane", "plane_axis"))):
-        rows, there = arrays["plane_contacts"][:, column], len(arrays.get(quantity, ()))
-        if rows.size and (rows.min() < 0 or rows.max() >= there):
-            raise RunFolderError(f"{file}: 'plane_contacts' names a {what} that is not there, of {there}")
 
 
 def state_files(path, sums):

@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from .files import RunFolderError, make_new, read_json
+from .files import RunFolderError, read_json
 from .format import LOCK_FILE
 
 try:
@@ -77,9 +77,14 @@ def take(folder):
         job, restarts = this_job()
         own = Lock(*this_machine(), os.getpid(), job, restarts)
         try:
-            make_new(file, (json.dumps(asdict(own), indent=2) + "\n").encode())
+            with open(file, "x") as new:
+                new.write(json.dumps(asdict(own), indent=2) + "\n")
         except FileExistsError:
             raise InUse("another run has just begun there; must be another folder") from None
+        except OSError:  # the disk is full
+            with suppress(OSError):
+                os.unlink(file)
+            raise
     except BaseException:
         os.close(handle)
         raise

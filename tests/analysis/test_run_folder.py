@@ -139,7 +139,7 @@ STATE_DAMAGE = {
     "damaged": _halve,
     "'radius' is 0 at index 1": dict(radius=np.array([1e-7, 0.0])),
     "'cell_size' is 0 at index 1": dict(cell_size=np.array([1e-6, 0.0, 1e-6])),
-    "names grain 2, there are grains 0 to 1": dict(contact_pairs=np.array([[0, 2]])),
+    "'contact_pairs' must be of grains 0 to 1": dict(contact_pairs=np.array([[0, 2]])),
     "'contact_pairs' has the shape (0, 2)": dict(contact_pairs=np.zeros((0, 2), int)),
     "'aggregate' must be 0 or 1": dict(aggregate=np.array([0, 2])),
     "holds no grain": state_arrays(0.0, np.zeros((0, 3)), np.zeros((0, 3)), []),

@@ -133,16 +133,6 @@ def _start(path):
         os._exit(2)
 
 
-def test_a_disk_without_hard_links_will_do(tmp_path, monkeypatch):
-    def no_link(*_):
-        raise PermissionError(1, "Operation not permitted")
-
-    monkeypatch.setattr(os, "link", no_link)
-    folder = RunFolder(str(tmp_path / "run"))
-    assert read_lock(folder.path).pid == os.getpid()
-    folder.close()
-
-
 def test_both_commands_show_where_a_run_is(tmp_path, capsys):
     """A row of another machine without Slurm is one that failed: nothing here can tell when it ends."""
     folder = left_by(tmp_path / "run", ELSEWHERE)

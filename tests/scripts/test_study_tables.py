@@ -52,7 +52,7 @@ def test_a_study_by_name_writes_its_table_and_another_name_gets_a_hint(tmp_path)
     written.unlink(missing_ok=True)
     done = call(tmp_path, "/usr/bin/python3", suite / "yade_scripts/study.py", "compression-own", "--status")
     assert done.returncode == 0 and done.stdout.count("waiting") > 20 and len(table.read(written)) == 28
-    assert "did you mean compression-own.table?" in study(tmp_path, "compresion-own").stderr
+    assert "did you mean compression-own?" in study(tmp_path, "compresion-own").stderr
 
 
 @pytest.mark.in_yade

@@ -5,7 +5,6 @@ import shutil
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 from analysis.printable import printable
 from analysis.report.status import counts, duration_text
@@ -25,7 +24,6 @@ class Study:
 
     def __init__(self, table, jobs):
         self.name = os.path.splitext(os.path.basename(table))[0]
-        self.table, self._text = table, _bytes_of(table)
         self.rows, self.jobs = rows.read(table), jobs
         self.folder = StudyFolder(self.name)
         self._states = [None] * len(self.rows)
@@ -62,10 +60,6 @@ class Study:
             return ""
         return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
 
-    def has_been_edited(self):
-        """Whether the table is another one than that which was read."""
-        return _bytes_of(self.table) != self._text
-
     def announce(self):
         """Print how much there is to do, and the estimate of the time."""
         states = self.states()
@@ -84,14 +78,6 @@ class Study:
             f"at {million:.3g} million contact updates a second a core",
             flush=True,
         )
-
-
-def _bytes_of(path):
-    """A file's bytes, or None."""
-    try:
-        return Path(path).read_bytes() if os.path.isfile(path) else None
-    except OSError:
-        return None
 
 
 def slowness(rows, states):
