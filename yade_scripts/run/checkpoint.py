@@ -39,14 +39,9 @@ class Checkpoint:
         try:
             found = read_arrays(os.path.join(run_folder, RECORDER), ["rows"], texts=["about"])
             about = json.loads(found["about"])
-            self.rows, self.run, self.wallTime, self.scene = (
-                found["rows"],
-                *map(about.get, ("run", "wallTime", "scene")),
-            )
-            # None: of a version that did not write them, which require_agreement() refuses.
-            self.interval, self.states, self.sums, self.columns = map(
-                about.get, ("interval", "states", "sums", "columns")
-            )
+            self.rows, self.columns = found["rows"], about.get("columns")
+            self.run, self.wallTime, self.interval = about.get("run"), about.get("wallTime"), about.get("interval")
+            self.scene, self.states, self.sums = about.get("scene"), about.get("states"), about.get("sums")
         except (RunFolderError, ValueError, AttributeError) as error:
             raise CheckpointError(
                 f"{self.folder}: not a checkpoint ({error}); must be removed to start the run again"

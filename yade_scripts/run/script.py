@@ -35,14 +35,10 @@ def main(kind, description):
         from yade.wrapper import Omega
 
         import contact_law  # noqa: F401  (the plugin, before its classes are needed)
-        from yade_scripts.run.kind import Schedule
 
         scene = kind.prepare(parameters, Omega().numThreads)
         _require_finite(scene.parameters, scene.constants["timeUnit"])
-        schedule = lambda kept=None: Schedule.of(
-            scene.parameters.duration, scene.time_step, scene.interval, states=scene.parameters.states, kept=kept
-        )
-        folder, schedule = _open(kind, scene, schedule)
+        folder, schedule = _open(kind, scene)
     try:
         status = _carry_out(kind, scene, schedule, folder, begun)
     finally:
@@ -57,21 +53,23 @@ def _require_finite(parameters, time_unit):
     require_countable(parameters.duration, parameters.stepFraction, time_unit)
 
 
-def _open(kind, scene, scheduled):
-    """The run folder, with its checkpoint if the run resumes from one; the Schedule.
-
-    scheduled(kept): the Schedule, with the interval between samples that a run which resumes has kept."""
+def _open(kind, scene):
+    """The run folder, with its checkpoint if the run resumes from one; the Schedule, whose interval between samples is
+    then the checkpoint's."""
     from yade_scripts.run import report
     from yade_scripts.run.folder import RunFolder
+    from yade_scripts.run.kind import Schedule
 
-    given, schedule = scene.parameters, scheduled()
+    given, interval = scene.parameters, None
     folder = RunFolder(given.out, given.overwrite, given.resume)
     saved = folder.checkpoint
     try:
         if saved:
             differs = resuming.difference(kind, given, saved.run, but=("duration",))
             saved.require_agreement(differs, report.made_with())
-            schedule = scheduled(saved.interval)
+            interval = saved.interval
+        schedule = Schedule.of(given.duration, scene.time_step, scene.interval, states=given.states, kept=interval)
+        if saved:
             saved.require_whole()
             saved.require_time_left(schedule.steps * scene.time_step, folder.has_ended())
             folder.resume()

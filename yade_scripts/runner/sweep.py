@@ -72,8 +72,6 @@ def _sweep(kind, script, parameters, folder, jobs):
         raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
     if not isinstance(folder, (str, os.PathLike)) or os.fspath(folder) == "":
         raise ParameterError(f"folder = {folder}: must be a path; parameters are given by name, velocity=3")
-    if os.path.lexists(folder) and not os.path.isdir(folder):
-        raise ParameterError(f"folder = {folder}: is a file; must be a folder")
     rows = _rows(kind, script, parameters, os.fspath(folder))
     name = hashlib.sha256(repr(rows).encode()).hexdigest()[:8]
     file = os.path.join(folder, f"{kind.name}-{name}.table")
@@ -110,9 +108,6 @@ def _listed(name, value):
     values = list(value) if isinstance(value, (list, tuple, range, set)) else [value]
     if not values:
         raise ParameterError(f"{name}: has no value; must be one or several")
-    twice = [str(value) for place, value in enumerate(values) if value in values[:place]]
-    if twice:
-        raise ParameterError(f"{name} = {twice[0]}: given twice; must be given once")
     return values
 
 
