@@ -6,16 +6,15 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from .files import RunFolderError, is_unfinished, read_arrays, read_bytes
+from .files import RunFolderError, read_arrays, read_bytes
 from .folder import read_ended, read_record, state_files
-from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, LOCK_FILE, RUN_FILE
+from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, RUN_FILE
 from .lock import under_way
 
 DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 KINDS = (DONE, RUNNING, WAITING, FAILED)
 EARLY = 0.02  # progress below which a pace says nothing
 FAILURE = "failed"  # how the outcome of a failed run begins, in run.json
-NAMED = 3  # files that a line of verify_run() names
 NO_SUMS = "has no sums (of a version before 0.5.0): damage that leaves it readable is not noticed"
 
 
@@ -127,12 +126,8 @@ def verify_run(folder):
         problems = _wrong(read_record, folder)
         return problems, [] if problems else [NO_SUMS]
     checks = [_wrong(read_bytes, folder / name, digits) for name, digits in sorted(sums.items())]
-    problems, others = sum([*checks, _wrong(state_files, folder, sums)], []), _others(folder, sums)
-    said = [] if problems else [f"{len(sums)} files, as the run has left them"]
-    if others:
-        more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
-        said.append(f"also holds {', '.join(others[:NAMED])}{more}, which the run has not written")
-    return problems, said
+    problems = sum([*checks, _wrong(state_files, folder, sums)], [])
+    return problems, [] if problems else [f"{len(sums)} files, as the run has left them"]
 
 
 def _wrong(check, *of):
@@ -142,11 +137,3 @@ def _wrong(check, *of):
     except RunFolderError as error:
         return [str(error)]
     return []
-
-
-def _others(folder, sums):
-    """Names of the files in a folder that are not the run's, sorted."""
-    found = (path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir())
-    ours = (ENDED_FILE, LOCK_FILE, *sums)
-    theirs = (name for name in found if name not in ours and not name.startswith(f"{CHECKPOINT_FOLDER}/"))
-    return sorted(name for name in theirs if not is_unfinished(Path(name).name))

