@@ -32,7 +32,7 @@ MISTAKES = {
     "analysis film empty --colour blue": "argument --colour: invalid choice: 'blue'",
     "analysis view empty --out a.txt": "a.txt: must end in .html",
     "analysis study viscos empty": "no study viscos (did you mean viscous?)",
-    "analysis study viscous runs.csv": "runs.csv: not as `analysis study` has written it",
+    "analysis study viscous runs.csv": "runs.csv: not a table of runs",
     "analysis plot sticking empty --out a.xyz": "a.xyz: must end in .png",
     "analysis outcome --velocity -5 --projectile 2 --target 5 --filling .1": "-5: must be a number > 0",
     "analysis summry empty": "invalid choice: 'summry'",
