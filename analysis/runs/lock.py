@@ -29,7 +29,7 @@ TRIES, BETWEEN = 5, 0.02  # s
 SQUEUE_AGAIN = 10.0  # s for which an answer of squeue is kept
 ALIVE = ("RUNNING", "COMPLETING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING", "STAGE_OUT")
 _JOB = re.compile(r"(\d+)(_\d+)?")
-_ANSWERS = {}  # of squeue: {job: (when, {task: state} or None, why there is no answer or None)}
+_ANSWERS = {}  # of squeue: {job: (when, what states_of_job() gives)}
 
 
 class InUse(Exception):
@@ -154,7 +154,7 @@ def _is_over(lock):
     job, restarts = this_job()
     if job == lock.job and restarts != lock.restarts:
         return True  # this is the job begun anew, which Slurm does when it has ended the former processes
-    states = states_of_job(lock.job.partition("_")[0])
+    states, _ = states_of_job(lock.job.partition("_")[0])
     return states is not None and states.get(lock.job) not in ALIVE
 
 
@@ -167,19 +167,13 @@ def this_job():
 
 
 def states_of_job(job):
-    """{job with its array task, such as 12_3: state} of a job of Slurm (its number, text), none of a job that is long
-    over.
+    """({task, such as 12_3: state} of a job of Slurm (its number, text), why there is none). A job that is long over
+    has no tasks; without an answer of squeue the first is None, and without squeue the second, too.
 
-    None where squeue has no answer. It is called once for all tasks."""
+    squeue is called once for all tasks."""
     if job not in _ANSWERS or time.monotonic() - _ANSWERS[job][0] > SQUEUE_AGAIN:
-        _ANSWERS[job] = time.monotonic(), *_squeue(job)
+        _ANSWERS[job] = time.monotonic(), _squeue(job)
     return _ANSWERS[job][1]
-
-
-def why_unknown(job):
-    """Why squeue had no answer for a job when states_of_job() looked, in a few words; None where it had one, or isn't
-    there."""
-    return _ANSWERS[job][2]
 
 
 def _squeue(job):

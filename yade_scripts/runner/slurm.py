@@ -27,7 +27,7 @@ if __name__ == "__main__":
 
 from analysis.printable import printable
 from analysis.runs.files import RunFolderError, write_file
-from analysis.runs.lock import states_of_job, this_job, why_unknown
+from analysis.runs.lock import states_of_job, this_job
 from yade_scripts.parameters.errors import one_line_errors, tell
 from yade_scripts.run.parameters import file_name
 from yade_scripts.run.table import read
@@ -124,8 +124,8 @@ def queued(study_folder, sure=False):
         try:
             with open(os.path.join(folder, JOB)) as file:
                 job, _, tasks = file.read().strip().partition(" ")
-            states = states_of_job(job) if job.isdecimal() else None
-            if sure and states is None and job.isdecimal() and (why := why_unknown(job)):
+            states, why = states_of_job(job) if job.isdecimal() else (None, None)
+            if sure and why:
                 raise SlurmError(f"squeue: {why}; must tell whether job {job} is in the queue, so nothing is submitted")
             names = [(row.description, row.cells["out"]) for row in read(os.path.join(folder, ROWS))] if states else []
             tasks = int(tasks or len(names))
