@@ -116,7 +116,7 @@ def under_way(folder):
 
 
 def read_lock(folder):
-    """Lock of a folder (path), None where there is none; what can't be read has the defaults."""
+    """Lock of a folder (path), or None; one that can't be read has the defaults."""
     file = Path(folder) / LOCK_FILE
     try:
         return Lock(**read_json(file))

@@ -69,7 +69,7 @@ class Batch:
             worker.close()
 
     def running(self):
-        """Start what there is room for; the rows that have not come to their end."""
+        """Start rows as far as threads are free; the rows that are running."""
         for worker in self._busy():
             worker.poll()
         busy = sum(worker.row.threads for worker in self._busy())
@@ -99,7 +99,7 @@ class Batch:
         return [worker for worker in self._workers if worker.row]
 
     def _idle(self, log):
-        """A worker without a row: one that there is, or a new one, whose start is in the log."""
+        """A worker without a row; a new one, whose start is in the log, when all are busy."""
         free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
         if not free:
             # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process

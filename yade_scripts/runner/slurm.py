@@ -1,8 +1,8 @@
 """A study as job arrays of Slurm: a task for each row that is left, or for several short ones.
 
-Each job has a folder slurm-N below the study's: rows.table with the rows as they are now, of which task
-k of T has the k-th and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T;
-k.out, what a task printed. The logs of the runs are where a local runner has them. A task is run by Slurm:
+Each job has a folder slurm-N below the study's. It holds rows.table, the rows as they are now: task k of T runs the
+k-th of them and each T further on; job.sh, the script that was submitted; job, Slurm's number of it, and T; k.out, what
+a task printed. The logs of the runs are where a local runner has them. Slurm starts a task by
 
     python3 slurm.py ROWS.table NUMBER TASKS      every row of that number, counted from 1, then each TASKS further on
 
@@ -199,12 +199,12 @@ class Task:
         if not self._worker or not self._worker.is_alive():
             self._worker = Worker(log)
         self._worker.begin(row, log)
-        told = False
+        passed_on = False
         while (status := self._worker.poll()) is None:
             wait([self._worker.connection], POLL)
-            if self.stopped and not told:
+            if self.stopped and not passed_on:
                 self._worker.stop()
-                told = True
+                passed_on = True
         return status
 
     def _note(self, number, _frame):

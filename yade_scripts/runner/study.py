@@ -29,7 +29,7 @@ class Study:
         self._states = [None] * len(self.rows)
 
     def forget_failures(self):
-        """Remove the logs of rows that have failed and may be run again: these failures are none of this call."""
+        """Remove the logs of rows that failed in an earlier call and may be run again."""
         failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
         self.folder.remove_logs(failed)
 
