@@ -167,10 +167,8 @@ def test_the_gallerys_intervals_hold_the_largest_piece_of_held_out_runs():
         held = of_structure(all_held, structure)
         at, several = variables.variables(held), held.pieces > 1
         speed = at.velocity * variables.breaking_velocity(ICE, GRAIN_RADIUS["ice"])
-        impact = np.sqrt(at.impact_square)
-        found = analysis.outcome(
-            speed, at.mass_ratio * at.grains, at.grains, at.filling, impact=impact, structure=structure
-        )
+        grains, how = (at.mass_ratio * at.grains, at.grains), {"impact": np.sqrt(at.impact_square)}
+        found = analysis.outcome(speed, *grains, at.filling, structure=structure, **how)
         assert np.all(found["largest"] + found["second"] < 1 + 1e-5)
         inside = found["inside"] == 1
         within = (found["largest_low"] <= held.largest) & (held.largest <= found["largest_high"])

@@ -74,15 +74,10 @@ def compression(samples=20_001):
     time = np.linspace(0.0, 1e6, samples)
     filling = 0.004 * 125 ** (time / 1e6)
     edge = (1.0 / filling) ** (1 / 3)
-    return {
-        "time": time,
-        "filling": filling,
-        "pressure": SCALE * filling**3,
-        **{f"edge_{axis}": edge for axis in "xyz"},
-        # dW = P dV, of a volume of 1/phi
-        "boundaryWork": -SCALE * filling**2 / 2,
-        "constraintWork": np.zeros_like(filling),
-    }
+    history = {"time": time, "filling": filling, "pressure": SCALE * filling**3}
+    history |= {f"edge_{axis}": edge for axis in "xyz"}
+    # dW = P dV, of a volume of 1/phi
+    return {**history, "boundaryWork": -SCALE * filling**2 / 2, "constraintWork": np.zeros_like(filling)}
 
 
 def test_pressure_by_the_work_counts_what_happens_between_samples():
@@ -117,17 +112,11 @@ def test_tension_of_a_stretched_cell():
     """A volume that grows after the compression, with work as of a constant tension, then none."""
     history = compression(samples=2001)
     grown = np.linspace(1.0, 2.0, 500)
-    volume = np.prod([history[f"edge_{axis}"][-1] for axis in "xyz"])
-    more = {
-        "time": 1e6 + np.arange(1, 501) * 1e3,
-        "filling": history["filling"][-1] / grown,
-        "pressure": np.zeros(500),
-        "edge_x": history["edge_x"][-1] * grown,
-        "edge_y": np.full(500, history["edge_y"][-1]),
-        "edge_z": np.full(500, history["edge_z"][-1]),
-        "boundaryWork": history["boundaryWork"][-1] - 50.0 * np.minimum(grown - 1.0, 0.5) * volume,
-        "constraintWork": np.zeros_like(grown),
-    }
+    last = {name: series[-1] for name, series in history.items()}
+    work = 50.0 * np.minimum(grown - 1.0, 0.5) * last["edge_x"] ** 3
+    more = {name: np.full(500, value) for name, value in last.items()}
+    more |= {"time": 1e6 + np.arange(1, 501) * 1e3, "filling": last["filling"] / grown}
+    more |= {"edge_x": last["edge_x"] * grown, "boundaryWork": last["boundaryWork"] - work}
     both = {name: np.concatenate([history[name], more[name]]) for name in more}
     _, stress = tension(both, 5e4)
     assert stress[:4] == pytest.approx(50.0, rel=1e-9) and stress[-2:] == pytest.approx(0.0, abs=1e-9)

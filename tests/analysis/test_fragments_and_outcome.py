@@ -66,9 +66,7 @@ def _outcome(start, end, met=True):
 def test_unlike_aggregates_are_judged_by_what_the_target_gains(pieces, kind):
     """Of 32 and 8 grains: nine tenths of the mass in one piece are no sign of sticking."""
     velocity = np.where(np.arange(40)[:, None] < pieces[0], [[-0.06, 0, 0]], [[0.24, 0, 0]])
-    start, end = (
-        _state(*own) for own in ((MEETING, (0, 32), (32, 8)), (velocity, *zip(np.cumsum([0, *pieces]), pieces)))
-    )
+    start, end = _state(MEETING, (0, 32), (32, 8)), _state(velocity, *zip(np.cumsum([0, *pieces]), pieces))
     start["aggregate"] = np.repeat([0, 1], [32, 8])
     start["velocity"] = np.where(start["aggregate"][:, None], [[-0.8, 0, 0]], [[0.2, 0, 0]])
     outcome = _outcome(start, end)

@@ -70,7 +70,6 @@ def test_an_engine_that_would_move_the_grains_twice_is_refused_unless_dead():
 @IN_YADE
 def test_help_describes_attributes_with_units_and_energies_start_anew_after_they_are_cleared():
     described = {JKRMat: "Surface energy gamma [J/m^2]", JKRWadaPhys: "overlap", JKRWadaEngine: "subSteps"}
-    described |= {Ip2_JKRMat_JKRMat_JKRWadaPhys: "pairConstants", Law2_ScGeom_JKRWadaPhys_JKRWada: "connection"}
     for kind, words in described.items():
         assert words in pydoc.plain(pydoc.render_doc(kind))
     new_scene(0.1 * unit)
@@ -83,11 +82,9 @@ def test_help_describes_attributes_with_units_and_energies_start_anew_after_they
 
 
 SETTINGS = {
-    "constants(ice(surfaceEnergy=-1), 1e-7)": "surfaceEnergy = -1: must be > 0 [J/m^2]",
     "constants(ice(poisson=0, viscoelasticTime=1e-12), 1e-7)": "poisson = 0: must be from 0 to 0.5, and above 0",
     "functor.neck = 0.71": "neck = 0.71: must be 0 (no bonds), or up to 0.7",
     "Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=float('nan'))": "linearDamping = nan: must be >= 0",
-    "functor.slidingStiffnessFactor = 0": "slidingStiffnessFactor = 0: must be > 0",
     "JKRMat(young=-1)": "young = -1: must be > 0 [Pa]",
 }
 
