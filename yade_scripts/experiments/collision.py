@@ -19,7 +19,6 @@ from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import (
-    EQUAL,
     MOST_GRAINS,
     MOST_GROWN,
     NAMED_PACKING,
@@ -35,13 +34,6 @@ from yade_scripts.run.parameters import RunParameters
 
 AGGREGATE, WALL = "aggregate", "wall"  # targets
 AXIS = 0  # across a plate
-NOT_WITH_A_PLATE = {
-    "projectileGrains": "the aggregate has grains",
-    "projectileFile": "the aggregate is of file",
-    "impact": "it meets the plate at right angles",
-    "neck": "there are no sintered bonds to plates",
-}
-NEEDED_BY_NECKS = {"sizes": EQUAL, "initialOverlap": 1}  # bonds start at rest
 WAY = 4  # radii of the larger aggregate that fluffy ones move at `velocity` in the default duration
 # At 3e3 m/s BCCA aggregates of ice broke down with the default step, at 2e3 they did not.
 VELOCITY = Usual(1e-6, 1e3, "thermal motion of aggregates to a third of sound in ice")
@@ -102,20 +94,20 @@ class CollisionParameters(AggregateParameters, RunParameters):
         "no piece is in motion within itself that could break it (1 where no duration is given, else 0)",
     )
 
-    ONLY_WITH = {**AggregateParameters.ONLY_WITH, "projectileGrains": tuple(MOST_GROWN), "projectileFile": ("file",)}
+    ONLY_WITH = [
+        *AggregateParameters.ONLY_WITH,
+        ("projectileGrains", "packing", MOST_GROWN),
+        ("projectileFile", "packing", ["file"]),
+        *((name, "target", [AGGREGATE]) for name in ("projectileGrains", "projectileFile", "impact", "neck")),
+        *((name, "neck", [0]) for name in ("sizes", "initialOverlap")),  # bonds start at rest
+    ]
 
     def filled_in(self):
         """As AggregateParameters, with endWhenApart; refuses what doesn't go together."""
         found = super().filled_in()
-        for name, reason in NOT_WITH_A_PLATE.items() if found.target == WALL else ():
-            if value := getattr(found, name):
-                raise ParameterError(f"{name} = {value}: given with target = {WALL}; must be left out: {reason}")
         collision_step.require_usable(found)
         if found.projectileGrains is not None:
             require_growable(found.packing, "projectileGrains", found.projectileGrains)
-        for name, must in NEEDED_BY_NECKS.items() if found.neck else ():
-            if (value := getattr(found, name)) != must:
-                raise ParameterError(f"{name} = {value}: given with neck = {found.neck:g}; must be {must}")
         if found.neck and found.packing != "file":  # a file may name its material
             collision_step.require_sintered(found.neck, pair_constants(found))
         if found.endWhenApart is None:

@@ -42,11 +42,6 @@ FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillation
 EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
 PERIODIC, WALLS = "periodic", "walls"
 PACKING = {PERIODIC: "bcca", WALLS: "rbd"}
-OF_WALLS = (
-    ("engine", "fused", "only that has plates in periodic cells"),
-    ("stretch", "no", "walls only come together"),
-    ("initialFilling", None, "it is that of the layer"),
-)
 DEPOSITED = 0.15  # filling of a deep layer, which sets the square on which it is grown
 GAP = 0.1  # grain radii between the highest grain and the upper plate at the start
 UP = 2  # axis across the plates
@@ -116,6 +111,12 @@ class CompressionParameters(GrainParameters, RunParameters):
         None, POSITIVE, "time that is simulated if the run does not end earlier (as long as that takes)", "s"
     )
 
+    ONLY_WITH = [
+        ("stretchFilling", "stretch", ["x", "xyz"]),
+        # the functors have no plates in periodic cells, and walls only come together
+        *((name, "boundary", [PERIODIC]) for name in ("engine", "stretch", "initialFilling")),
+    ]
+
     def title(self):
         """compress-ice-N1024-Cv3e-07-s1 or compress-walls-ice-..., and the names of what is in it."""
         walls = f"{WALLS}-" if self.boundary == WALLS else ""
@@ -124,16 +125,10 @@ class CompressionParameters(GrainParameters, RunParameters):
 
     def filled_in(self):
         """As GrainParameters; refuses what doesn't go together."""
-        if self.stretchFilling is not None and self.stretch == "no":
-            raise ParameterError(f"stretchFilling = {self.stretchFilling:g}: given with stretch = no; must be left out")
         self.require_stretched_below(self.finalFilling)
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
-        for name, must, why in OF_WALLS if self.boundary == WALLS else ():
-            if (value := getattr(self, name)) != must:
-                wanted = f"must be {must or 'left out'}: {why}"
-                raise ParameterError(f"{name} = {value}: given with boundary = {WALLS}; {wanted}")
         return super(CompressionParameters, self.changed(packing=packing)).filled_in()
 
     def require_stretched_below(self, final):

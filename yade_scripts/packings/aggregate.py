@@ -74,26 +74,29 @@ class AggregateParameters(GrainParameters):
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
 
-    # {parameter: ways of packing that it has an effect on}
-    ONLY_WITH = {
-        **dict.fromkeys(("filling", "radius", "removeLooseGrains", "initialOverlap"), ("cpe",)),
-        **dict.fromkeys(("grains", "seed"), MADE),
-        "file": ("file",),
-        "planar": ("cpe", "bcca", "file"),
-        "sizes": tuple(MOST_GROWN),
-    }
+    ONLY_WITH = [
+        *((name, "packing", ["cpe"]) for name in ("filling", "radius", "removeLooseGrains", "initialOverlap")),
+        *((name, "packing", MADE) for name in ("grains", "seed")),
+        ("file", "packing", ["file"]),
+        ("planar", "packing", ["cpe", "bcca", "file"]),
+        ("sizes", "packing", MOST_GROWN),
+        *((name, "sizes", [kind]) for name, kind in OF_SIZES.items()),
+    ]
 
     def filled_in(self):
         """What follows from the way of packing: radius from grains or grains from radius and filling (cpe)."""
-        self._require_of_packing()
+        found = self.changed(sizeFraction=0.5) if self.sizes == TWO and self.sizeFraction is None else self
+        if self.packing == "file" and self.file is None:
+            raise ParameterError(f"file: not given with packing = file; {self.columns()['file'].must}")
+        for name, of in OF_SIZES.items():
+            if self.sizes == of and getattr(found, name) is None:
+                raise ParameterError(f"{name}: not given with sizes = {of}; {self.columns()[name].must}")
         if self.packing == "cpe":
-            found = self._of_cpe()
-        elif self.packing == "file":
-            found = self
-        else:
-            found = self.changed(grains=GRAINS_GROWN if self.grains is None else self.grains)
+            found = found._of_cpe()
+        elif self.is_grown:
+            found = found.changed(grains=GRAINS_GROWN if self.grains is None else self.grains)
             require_growable(self.packing, "grains", found.grains)
-        return super(AggregateParameters, found._with_sizes()).filled_in()
+        return super(AggregateParameters, found).filled_in()
 
     @property
     def is_grown(self):
@@ -106,28 +109,6 @@ class AggregateParameters(GrainParameters):
             return self.grainRadius * min(1.0, self.sizeRatio), self.grainRadius * max(1.0, self.sizeRatio)
         width = exp(WIDEST * self.sizeSpread) if self.sizes == LOGNORMAL else 1.0
         return self.grainRadius / width, self.grainRadius * width
-
-    def _require_of_packing(self):
-        """What another way of packing alone has must be left out."""
-        if self.packing == "file" and self.file is None:
-            raise ParameterError("file: not given with packing = file; must be a packing that make_packing.py wrote")
-        for name, packings in self.ONLY_WITH.items():
-            value = getattr(self, name)
-            if value != self.columns()[name].default and self.packing not in packings:
-                text = value if isinstance(value, str) else f"{value:g}"
-                raise ParameterError(f"{name} = {text}: given with packing = {self.packing}; must be left out")
-
-    def _with_sizes(self):
-        for name, of in OF_SIZES.items():
-            if self.sizes != of and getattr(self, name) is not None:
-                raise ParameterError(
-                    f"{name} = {getattr(self, name):g}: given with sizes = {self.sizes}; must be left out"
-                )
-        found = self.changed(sizeFraction=0.5) if self.sizes == TWO and self.sizeFraction is None else self
-        for name, of in OF_SIZES.items():
-            if self.sizes == of and getattr(found, name) is None:
-                raise ParameterError(f"{name}: not given with sizes = {self.sizes}; {self.columns()[name].must}")
-        return found
 
     def _of_cpe(self):
         dimensions = 2 if self.planar else 3

@@ -177,8 +177,16 @@ class Parameters:
                 lines += [columns.pop(name).help() for name in own]
         return "\n".join(lines)
 
+    # (parameter, another one, those of its values with which the first has an effect)
+    ONLY_WITH = ()
+
     def filled_in(self):
         """The same with what follows from the parameters alone; raises ParameterError where they contradict."""
+        for name, other, values in self.ONLY_WITH:
+            value, found = getattr(self, name), getattr(self, other)
+            if value != self.columns()[name].default and found not in values:
+                value, found = (x if isinstance(x, str) else f"{x:g}" for x in (value, found))
+                raise ParameterError(f"{name} = {value}: given with {other} = {found}; must be left out")
         return self
 
     def changed(self, **values):
