@@ -165,12 +165,12 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
     ],
 )
 def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, on, restitution, reason):
-    seen = plate_outcome(START, state, met=kind != "never met")
-    assert (seen.kind, seen.mass_on_plate, seen.growth_efficiency) == (kind, on, on)
-    assert max(seen.mass_fractions) == pytest.approx(max(on, 1 - on)) and seen.fragments == 1 + (0 < on < 1)
-    why = why_undecided_on_plate(seen.kind, START, state, CONSTANTS, -since_touch)
+    found = plate_outcome(START, state, met=kind != "never met")
+    assert (found.kind, found.mass_on_plate, found.growth_efficiency) == (kind, on, on)
+    assert max(found.mass_fractions) == pytest.approx(max(on, 1 - on)) and found.fragments == 1 + (0 < on < 1)
+    why = why_undecided_on_plate(found.kind, START, state, CONSTANTS, -since_touch)
     assert why is None if reason is None else reason in why
-    assert seen.if_decided(why).restitution == restitution
+    assert found.if_decided(why).restitution == restitution
 
 
 @pytest.mark.parametrize(

@@ -73,15 +73,15 @@ def test_grains_are_shown_at_start_maximum_and_end_and_fluffy_aggregates_whole(r
     titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
     assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
     covered = []
-    for filling, said in ((0.4, "behind"), (0.1, "all grains")):
+    for filling, words in ((0.4, "behind"), (0.1, "all grains")):
         figure = grains_figure(replace(run, parameters={**run.parameters, "filling": filling}))
-        assert said in figure._suptitle.get_text()
+        assert words in figure._suptitle.get_text()
         covered.append((figure.axes[0].images[0].get_array() < 1).any(axis=2).sum())
     assert covered[1] > covered[0]
 
 
 def test_painted_spheres():
-    """The nearer one hides the farther; the area is that of a disc; what is smaller than a pixel is seen."""
+    """The nearer one hides the farther; the area is that of a disc; what is smaller than a pixel is shown."""
     position, colour = np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]]), np.eye(3)
     image = paint_spheres(position, np.ones(3), colour, (-1.5, 4.5, -1.5, 1.5), 0.05)
     assert np.argmax(image[30, 30]) == 0 and np.argmax(image[30, 90]) == 2

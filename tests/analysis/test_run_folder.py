@@ -20,7 +20,7 @@ from analysis.runs.ledger import closure, closure_history, fractions, fractions_
 
 @pytest.fixture
 def folder(run):
-    """One without sums: what its files themselves tell of damage."""
+    """One without sums: what its files alone show of damage."""
     return unseal(run)
 
 

@@ -22,10 +22,10 @@ def study(own, *arguments):
 
 
 def test_the_documented_study_runs(own, capsys):
-    found, runs, said = answered(capsys, own / "sticking.py", own / "runs", "--figures", str(own / "out"))
+    found, runs, err = answered(capsys, own / "sticking.py", own / "runs", "--figures", str(own / "out"))
     assert (found[STICKS.format(3)]["ours"], found[STICKS.format(3)]["counted"]) == (0.8, "3 of 3, 1 undecided")
     assert STICKS.format(40) not in found  # undecided
-    assert runs == 5 and "late: has not ended, left out" in said
+    assert runs == 5 and "late: has not ended, left out" in err
     assert {file.name for file in (own / "out").iterdir()} == {"comparison.csv", "runs.csv", "sticking.png"}
     table = pandas.read_csv(own / "out" / "comparison.csv").set_index("quantity")
     assert table.ours[STICKS.format(3)] == 0.8 and len(table) == len(found)
@@ -72,8 +72,8 @@ def test_of_a_run_in_two_tables_the_first_counts(own, capsys):
     for table in tables:
         study(own, table.with_suffix(""), "--format", "csv")
         table.write_text(capsys.readouterr().out)
-    found, runs, said = answered(capsys, own / "sticking.py", *tables)
-    assert runs == 5 and found[STICKS.format(40)]["counted"] == "1 of 1" and "1 runs are in a table before it" in said
+    found, runs, err = answered(capsys, own / "sticking.py", *tables)
+    assert runs == 5 and found[STICKS.format(40)]["counted"] == "1 of 1" and "1 runs are in a table before it" in err
     assert main(["study", "viscous", str(tables[0])]) == 2 and capsys.readouterr().err.count("\n") == 1
 
 
@@ -94,8 +94,8 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys, tmp
     folder = GALLERY / name
     page = (folder / "README.md").read_text()
     assert len(page.replace("|", " ").split()) <= 700
-    found, _, said = answered(capsys, name, folder / "runs.csv")
-    assert not said
+    found, _, err = answered(capsys, name, folder / "runs.csv")
+    assert not err
     kept = pandas.read_csv(folder / "comparison.csv").set_index("quantity")
     assert list(found) == list(kept.index)
     error = 1e-9 + 1e-3 * kept.error.fillna(0.0)  # fits end a little elsewhere with another scipy

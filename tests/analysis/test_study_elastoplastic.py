@@ -189,8 +189,8 @@ def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):
         for compressed in (0, 1):
             collision(tmp_path / f"{compressed}-{seed}", seed, compressed)
     two_pairs(tmp_path / "other", 3.0, 1, packing="file")
-    found, runs, said = answered(capsys, "compressed", tmp_path)
-    assert runs == 6 and "neither CPE aggregates nor spheres cut out" in said
+    found, runs, err = answered(capsys, "compressed", tmp_path)
+    assert runs == 6 and "neither CPE aggregates nor spheres cut out" in err
     found = {re.sub(r", φ = 0.4, 3 m/s.*?(?= \[|$)", "", what): row["ours"] for what, row in found.items()}
     deepest = pytest.approx(3.0 * 99e-9**2 / 200e-9 / RADIUS, rel=1e-3)
     # A24 eqs 31 and 44, of spheres of 400 kg/m^3 with R* = 10 r

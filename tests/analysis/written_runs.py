@@ -48,7 +48,7 @@ def cubic_lattice(side, axes=(0, 1, 2)):
 
 def losing(time, energy=0.0, lost={}, touching=0, **series):
     """A collision's history (T,): an energy [J], of which fractions {channel: part} go evenly over the time; nothing
-    else happens but what other series tell."""
+    else happens but other series."""
     zero = np.zeros(len(time))
     history = {name: lost.get(name, 0.0) * energy * time / time[-1] for name in CHANNELS}
     history["kinetic"] = energy - sum(history.values())
