@@ -1,7 +1,7 @@
 """The sanitizers of addresses, undefined behaviour and threads on the engine, the kernel, the functors and checkpoints.
 
-Run by make test-sanitizers, a quarter of an hour on two cores. The last commit is compiled in build/sanitizers, once for
-each: by clang, as g++ takes ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was.
+Run by make test-sanitizers, a quarter of an hour on two cores. The last commit is compiled in build/sanitizers, once
+for each: by clang, as g++ takes ten times as long for the engine's passes; what sees YADE's types by g++, as YADE was.
 Threads are tried in the harness alone, where clang's OpenMP tells the sanitizer when a parallel region begins and ends
 (Archer). YADE itself is not instrumented. Writes build/sanitizers.md; exit status 0 when nothing was found.
 """

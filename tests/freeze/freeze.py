@@ -40,7 +40,7 @@ SCENES = {
     "piston": (COMPRESS, "boundary=walls " + CELL),
     "cell": (COMPRESS, CELL),
     "stretch": (COMPRESS, CELL + " stretch=x"),
-    "resumed": (COLLIDE, "packing=bpca grains=400 velocity=15 seed=2 duration=3e-7 states=5 checkpointInterval=0.3"),
+    "resumed": (COLLIDE, "packing=bpca grains=400 velocity=15 seed=2 duration=3e-7 states=5 checkpointInterval=0.05"),
     "sinter": (OWN, "sinter"),
     "appended": (OWN, "appended"),
 }

@@ -1,4 +1,4 @@
-"""In YADE: run a script (argv[2]) with its arguments as YADE would, every JKRWadaEngine with the instruction set argv[1]."""
+"""In YADE: run a script (argv[2]) as YADE would, every JKRWadaEngine with the instruction set argv[1]."""
 
 import os
 import runpy

@@ -1,4 +1,4 @@
-"""In YADE: scenes that change in mid-run, with the history and states of a run folder: own_scenes.py sinter|appended out=FOLDER."""
+"""In YADE: scenes that change in mid-run, written as a run folder: own_scenes.py sinter|appended out=FOLDER."""
 
 import os
 import sys
