@@ -10,5 +10,5 @@ def refused(kinds, *words):
     """The block must raise one of these exceptions, whose message is one line with all of these words in it."""
     with pytest.raises(kinds) as error:
         yield
-    said = str(error.value)
-    assert "\n" not in said and all(word in said for word in words), said
+    message = str(error.value)
+    assert "\n" not in message and all(word in message for word in words), message

@@ -191,7 +191,7 @@ def set_free(packing, material):
     return before, contact_law.snapshot(), max(kinetic)
 
 
-def said(call):
+def message_of(call):
     """What a call is refused with, or ''."""
     try:
         call()
@@ -202,7 +202,7 @@ def said(call):
 
 def refusal(steps=1):
     """What one of so many O.steps is refused with, or ''."""
-    return said(lambda: [O.step() for _ in range(steps)])
+    return message_of(lambda: [O.step() for _ in range(steps)])
 
 
 def positions():

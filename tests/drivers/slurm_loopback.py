@@ -122,8 +122,8 @@ class Loopback:
             except NoSlurm as error:
                 dead = [daemon.args[0] for daemon in self._daemons if daemon.poll() is not None]
                 if dead or time.monotonic() > deadline:
-                    said = "".join((self.folder / f"{name}.out").read_text() for name in dead)
-                    raise NoSlurm(f'{" ".join(dead) or error}: {" ".join(said.split())}') from None
+                    printed = "".join((self.folder / f"{name}.out").read_text() for name in dead)
+                    raise NoSlurm(f'{" ".join(dead) or error}: {" ".join(printed.split())}') from None
                 time.sleep(0.2)
 
 

@@ -24,7 +24,7 @@ def require_refused(cases, attempt):
     """Each case (text: words) of what attempt(text) does is refused with one line that has these words."""
     others = {}
     for text, words in cases.items():
-        message = said(lambda: attempt(text))
+        message = message_of(lambda: attempt(text))
         if not message or "\n" in message or not all(word in message for word in words):
             others[text] = message
     assert not others, "\n".join(f"{text}: {message!r}" for text, message in others.items())

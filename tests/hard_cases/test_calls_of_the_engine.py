@@ -39,7 +39,7 @@ def test_interactions_that_a_script_erased_are_written_again():
         engine().writeInteractions()
         assert O.interactions.countReal() == 3, erase
         run(erase)
-        assert ("cannot be erased there" in said(O.step)) == ("NonReal" not in erase), erase
+        assert ("cannot be erased there" in message_of(O.step)) == ("NonReal" not in erase), erase
         O.step()
         assert len(O.interactions) == 0, erase
 
@@ -73,10 +73,10 @@ def test_calls_while_the_loop_runs_are_refused():
         e = engine()
         # Once a scene, and not at once: with ForceResetter alone YADE itself now and then ends with SIGSEGV otherwise.
         O.run(-1)
-        message = said(lambda: run(text, e=e))
+        message = message_of(lambda: run(text, e=e))
         time.sleep(0.02)
         O.pause()
-        at_rest[text] = said(lambda: run(text, e=e))
+        at_rest[text] = message_of(lambda: run(text, e=e))
         O.wait()
         O.step()
         if message:
@@ -107,7 +107,7 @@ def test_a_snapshot_has_what_a_script_has_changed():
     again = contact_law.snapshot()
     assert (again["position"] < 1e-3).all() and again["contact_normal_force"].any()
     O.bodies[2].state = State()
-    assert "body 2 was given another state after the start" in said(contact_law.snapshot)
+    assert "body 2 was given another state after the start" in message_of(contact_law.snapshot)
 
 
 def damageable(name):
@@ -144,7 +144,7 @@ def test_a_damaged_checkpoint_is_refused(name, first):
 
     def loaded(items):
         load(items)
-        return said(O.step)
+        return message_of(O.step)
 
     def with_number(k, value):
         return [*items[:k], value, *items[k + 1 :]]

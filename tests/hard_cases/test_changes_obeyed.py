@@ -280,4 +280,4 @@ def test_steps_that_are_too_long_for_light_grains_are_refused(mover):
         grain((k * d, 0, 0), 1e-7, ice())
         O.bodies[k].state.mass *= 0.1
         O.bodies[k].state.inertia *= 0.1
-    assert "must be above 0 and below" in said(lambda: steps(2))
+    assert "must be above 0 and below" in message_of(lambda: steps(2))

@@ -32,8 +32,8 @@ def test_changes_in_the_middle_of_a_run_are_refused():
         steps(20)
         run(text, I=O.bodies[2].state.inertia)
         time = O.time
-        message = said(O.step)
-        assert said(O.step) and O.time == time, text
+        message = message_of(O.step)
+        assert message_of(O.step) and O.time == time, text
         raise RuntimeError(message)
 
     require_refused(CHANGES, attempt)

@@ -92,7 +92,7 @@ def test_a_pyrunner_that_raises_loses_no_contacts(new, saved):
 
     sys.modules["__main__"].exchange = exchange
     O.engines = [PyRunner(command="exchange()", iterPeriod=1, nDo=1, initRun=True), engine()]
-    assert "of a script" in said(O.step)
+    assert "of a script" in message_of(O.step)
     if saved:
         O.load("within.yade")
     assert O.interactions.countReal() == contacts

@@ -38,7 +38,7 @@ REFUSED = [
 ]
 
 
-def said(add, changes):
+def refusal_of(add, changes):
     """What the functors refuse such a scene with, at the latest soon after the step."""
     neck = changes.get("neck", 0)
     new_scene(1e-3 * unit, neck=neck)
@@ -56,16 +56,16 @@ def said(add, changes):
 @pytest.mark.in_yade
 @pytest.mark.parametrize("add, changes, line", REFUSED, ids=[line[:24] for _, _, line in REFUSED])
 def test_refused_in_one_line_by_functors_and_engine(add, changes, line):
-    told = said(add, changes)
-    assert line in told and "\n" not in told
+    message = refusal_of(add, changes)
+    assert line in message and "\n" not in message
     fused_engine(neck=changes.get("neck", 0))
-    told = refusal()
-    assert line in told and "\n" not in told
+    message = refusal()
+    assert line in message and "\n" not in message
 
 
-def said_to_threads():
-    return [said(add, changes) for add, changes, _ in REFUSED]
+def refusals_by_threads():
+    return [refusal_of(add, changes) for add, changes, _ in REFUSED]
 
 
 def test_refused_whichever_thread_meets_it(yade):
-    assert all(line in told for told, (_, _, line) in zip(yade(said_to_threads, threads=3), REFUSED))
+    assert all(line in message for message, (_, _, line) in zip(yade(refusals_by_threads, threads=3), REFUSED))

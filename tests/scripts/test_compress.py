@@ -94,8 +94,8 @@ def test_it_ends_at_a_pressure(tmp_path):
     assert before < 2e3 <= reached < 2.1e3 and 0.05 < last < 0.4
     assert f"\nended by finalPressure, at a filling of {last:.3g}" in done.stdout
     assert about["parameters"]["finalFilling"] == pytest.approx(0.65, abs=0.005)
-    (said,) = messages(done)
-    assert done.returncode == 0 and "the cell is not stretched" in said and about["outcome"] == "completed"
+    (message,) = messages(done)
+    assert done.returncode == 0 and "the cell is not stretched" in message and about["outcome"] == "completed"
 
 
 def test_what_swings_from_the_start_is_no_pressure(tmp_path):

@@ -94,16 +94,16 @@ def test_mistakes_get_one_line(folder, capsys, monkeypatch, typed):
         status = COMMANDS[command](arguments)
     except SystemExit as end:
         status = end.code
-    said = capsys.readouterr().err.splitlines()
-    of_argparse = bool(said) and said[0].startswith("usage: ")  # which shows the usage first
-    assert status == 2 and MISTAKES[typed] in said[-1] and (of_argparse or len(said) == 1), said
+    lines = capsys.readouterr().err.splitlines()
+    of_argparse = bool(lines) and lines[0].startswith("usage: ")  # which shows the usage first
+    assert status == 2 and MISTAKES[typed] in lines[-1] and (of_argparse or len(lines) == 1), lines
 
 
 @pytest.mark.parametrize("typed", OF_YADE)
 def test_mistakes_in_what_yade_runs(folder, typed):
     ended = call(folder, "yade", "-n", "-x", f"{SCRIPTS}/collide.py", *shlex.split(typed))
-    (said,) = messages(ended)
-    assert ended.returncode == 2 and said.startswith("collide.py: ") and OF_YADE[typed] in said
+    (message,) = messages(ended)
+    assert ended.returncode == 2 and message.startswith("collide.py: ") and OF_YADE[typed] in message
 
 
 @pytest.mark.parametrize("script", ["collide.py", "compress.py"])

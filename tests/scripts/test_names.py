@@ -74,14 +74,14 @@ def test_no_escape_sequence_reaches_the_terminal(tmp_path):
     (tmp_path / f"{name}.table").write_text(f"description radius {RED}\n{name} -1 2\n")
     (tmp_path / name).mkdir()
     (tmp_path / name / "run.json").write_text('{"outcome": "failed: \\u001b[31m", "format": 3}')
-    said = [
+    printed = [
         study(tmp_path, f"{name}.table", "--status"),
         study(tmp_path, f"{name}.table", "--slurm", "--dry-run"),
         run_analysis(tmp_path, "status", name),
         call(tmp_path, "yade", "-n", "-x", COLLIDE, f"out={name}", f"radius={RED}"),
         call(tmp_path, PYTHON, f"{TOP}/contact_law/installation.py", "uninstall", name),
     ]
-    for done in said:
+    for done in printed:
         assert "\x1b" not in done.stdout + done.stderr and "\\x1b[31m" in done.stdout + done.stderr, done
 
 

@@ -190,5 +190,5 @@ def test_a_row_that_ended_or_runs_elsewhere_is_not_run(tmp_path, capsys, monkeyp
         monkeypatch.setattr(rows, "state", lambda *_, state=state: state)
         monkeypatch.setattr(rows, "refusal", lambda _, state=state: state.note or None)
         assert slurm.main([str(tmp_path / "rows.table"), "1", "1"]) == status
-        said = capsys.readouterr()
-        assert said.out + said.err == text
+        printed = capsys.readouterr()
+        assert printed.out + printed.err == text

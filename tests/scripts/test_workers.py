@@ -36,7 +36,7 @@ def log(folder, name):
 
 @pytest.fixture(scope="module")
 def one_worker(tmp_path_factory):
-    """(folder, what study.py said) of all runs one after another, of which the worker of `killed` is killed."""
+    """(folder, what study.py printed) of all runs one after another, of which the worker of `killed` is killed."""
     folder = tmp_path_factory.mktemp("rows")
     write_table(folder)
     process = start(folder, PYTHON, STUDY, "rows.table", "-j", "1")

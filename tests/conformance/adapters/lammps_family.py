@@ -174,5 +174,5 @@ def liggghts_series(scene, materials, steps):
 if __name__ == "__main__":
     code, path, *names = sys.argv[1:]
     program, series_of = (LMP, lammps_series) if code == "lammps" else ("liggghts", liggghts_series)
-    said = subprocess.run([program, "-h"], cwd=tempfile.gettempdir(), capture_output=True, text=True).stdout
-    main(code, re.search(r"Simulator - .+|LIGGGHTS-\S+ [\d.]+", said)[0], series_of, path, names)
+    help_text = subprocess.run([program, "-h"], cwd=tempfile.gettempdir(), capture_output=True, text=True).stdout
+    main(code, re.search(r"Simulator - .+|LIGGGHTS-\S+ [\d.]+", help_text)[0], series_of, path, names)

@@ -34,9 +34,9 @@ def cycle(name, made, scene, law, before, limit, work, **spins):
     made["prescribed"] = [segment(rounded(k * exact(QUARTER), 6), **sign(s)) for k, s in ends]
     early, questions = rounded(exact(QUARTER) / 20, 6), []
     for words, values, time in (("before the limit", before, early), ("at the limit", limit, QUARTER)):
-        said = law if values is before else (f"{formula}; held at the limit", f"{source}; W07")
+        origin = law if values is before else (f"{formula}; held at the limit", f"{source}; W07")
         for of, value in values.items():
-            questions.append(asked(f"{of} of {name} {words}", at(time, of, scene), value, unit(of), *said))
+            questions.append(asked(f"{of} of {name} {words}", at(time, of, scene), value, unit(of), *origin))
     spent = dict(scene=scene, kind="work", after=QUARTER, before=5 * QUARTER)
     questions.append(asked(f"work of a closed cycle of {name}", spent, work, "J", WORK, f"{source}; W07"))
     return made, questions
