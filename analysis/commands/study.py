@@ -103,7 +103,7 @@ def _is_only_input(options):
 
 
 def _text(kind, study, found, rows):
-    from ..studies.comparison import as_text, counted, of_table, text_table
+    from ..studies.comparison import counted, of_table, text_table
     from ..studies.pages import table_of
 
     if kind == "csv":
@@ -115,7 +115,7 @@ def _text(kind, study, found, rows):
         return json.dumps(
             {"study": study.name, "runs": len(found.table), "rows": records}, indent=1, ensure_ascii=False
         )
-    return f"{text_table(as_text(rows))}\n{counted(rows)}"
+    return f"{text_table(rows)}\n{counted(rows)}"
 
 
 def _write(options, study, found, runs, rows):

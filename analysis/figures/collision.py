@@ -129,16 +129,16 @@ PIXELS = 420  # across a view
 MICRO = 1e6
 
 
-def reach(state, held=0.95):
+def reach(state, held):
     """Half width [m] of a square around the origin that holds this fraction of a state's grains."""
     return float(np.quantile(np.abs(state.position[:, :2]).max(axis=1), held))
 
 
-def draw_view(axes, state, unit, half, centre=(0.0, 0.0, 0.0)):
-    """A state along z in a square of half width `half`, in units of `unit` [m], around `centre` [m], with its time."""
+def draw_view(axes, state, unit, half):
+    """A state along z in a square around the origin of half width `half`, in units of `unit` [m], with its time."""
     window, pixel = (-half, half, -half, half), 2 * half / PIXELS
     colour = np.array(AGGREGATE_COLOURS)[state.aggregate]
-    image = paint_spheres((state.position - centre) / unit, state.radius / unit, colour, window, pixel, fading=half)
+    image = paint_spheres(state.position / unit, state.radius / unit, colour, window, pixel, fading=half)
     axes.imshow(image, extent=window, origin="lower", interpolation="antialiased")
     axes.text(0.03, 0.97, rf"{state.time * MICRO:.2f} $\mu$s", transform=axes.transAxes, va="top", fontsize=9)
     axes.set_xticks([])

@@ -1,8 +1,7 @@
 """Columns of a table of runs with how a run folder fills them, and those that several studies have: grains, outcome,
 return, energy."""
 
-from dataclasses import dataclass
-from typing import Callable
+from dataclasses import astuple
 
 import numpy as np
 
@@ -23,22 +22,14 @@ class NotMeasured(Exception):
     """A sound run in which there is nothing to measure; the message is one line that says why."""
 
 
-@dataclass(frozen=True)
-class Columns:
-    """columns (runs.table.Column) that are measured together; of(run (RunFolder), row ({column: value} of those
-    before)) -> their values, in the same order; NotMeasured or RunFolderError where it can't."""
-
-    of: Callable
-    columns: tuple
-
-
 def group(of, *columns):
-    """Columns of several."""
-    return Columns(of, columns)
+    """Columns (runs.table.Column) that are measured together: of(run (RunFolder), row ({column: value} of those before))
+    gives their values, in the same order; NotMeasured or RunFolderError where it can't."""
+    return of, columns
 
 
 def one(name, unit, meaning, of, **more):
-    """Columns of one: of(run) is its value; more: runs.table.Column's."""
+    """A group of one column: of(run) is its value; more: runs.table.Column's."""
     return group(lambda run, row: (of(run),), Column(name, unit, meaning, **more))
 
 
@@ -60,16 +51,11 @@ def constant(name, unit, meaning, source=""):
     return one(name, unit, meaning, lambda run: derived_constants(run, source or name)[0])
 
 
-def flat(measured):
-    """(runs.table.Column, ...) of all Columns."""
-    return tuple(column for own in measured for column in own.columns)
-
-
-def row_of(measured, run):
-    """{column: value} of a RunFolder, as Columns measure it one after the other."""
+def row_of(groups, run):
+    """{column: value} of a RunFolder, measured group by group."""
     row = {}
-    for own in measured:
-        row.update(zip((column.name for column in own.columns), own.of(run, row), strict=True))
+    for of, columns in groups:
+        row.update(zip((column.name for column in columns), of(run, row), strict=True))
     return row
 
 
@@ -82,31 +68,19 @@ MET = one("met", "", "whether the aggregates touched", met, kind="b")
 CLOSURE = one("closure", "", "largest error of the energy ledger over K(0)", lambda run: closure(run.history))
 END = one("time", "s", "time at the end", lambda run: float(run.history["time"][-1]))
 
-
-# The constants that tell grains apart: unit and meaning.
-_CONSTANTS = {
-    "grainRadius": ("m", "radius of a grain"),
-    "young": ("Pa", "Young's modulus"),
-    "poisson": ("", "Poisson's ratio"),
-    "density": ("kg/m^3", "density of a grain"),
-    "surfaceEnergy": ("J/m^2", "gamma"),
-    "criticalRolling": ("m", "xi_crit"),
-    "slidingStiffnessFactor": ("", "k_s over Wada's"),
-}
-*_OF_MATERIAL, _SLIDING = OF_GRAINS = tuple(_CONSTANTS)
+# The constants that tell grains apart.
 GRAINS = (
-    *(constant(name, *_CONSTANTS[name]) for name in _OF_MATERIAL),
-    parameter(_SLIDING, *_CONSTANTS[_SLIDING], usual=1.0),
+    constant("grainRadius", "m", "radius of a grain"),
+    constant("young", "Pa", "Young's modulus"),
+    constant("poisson", "", "Poisson's ratio"),
+    constant("density", "kg/m^3", "density of a grain"),
+    constant("surfaceEnergy", "J/m^2", "gamma"),
+    constant("criticalRolling", "m", "xi_crit"),
+    parameter("slidingStiffnessFactor", "", "k_s over Wada's", usual=1.0),
 )
-
-
-def _of_paper(material, radius):
-    values = (radius, material.young, material.poisson, material.density, material.surface_energy)
-    return dict(zip(OF_GRAINS, (*values, material.critical_rolling, 1.0)))
-
-
+OF_GRAINS = tuple(column.name for _, columns in GRAINS for column in columns)
 # Kataoka et al. (2013), Table 1 and section 2.1; its ice is that of Arakawa et al. (2022, 2024) too.
-PAPERS = {name: _of_paper(material, RADII[name]) for name, material in MATERIALS.items()}
+PAPERS = {name: dict(zip(OF_GRAINS, (RADII[name], *astuple(own)[:5], 1.0))) for name, own in MATERIALS.items()}
 
 
 def other_grains(parameters, but=()):
@@ -150,16 +124,14 @@ def largest_compression(run):
 
 
 def _outcome(run, row):
-    """RunFolderError where the states don't make an outcome."""
     outcome, v = outcome_of_run(run), run.history["v"]
     return outcome.kind, outcome.restitution, float(np.nan_to_num(v[-1] / row["velocity"]) ** 2)
 
 
-def returned(history, time):
-    """(largest speed [m/s] at which the halves part, its time [s]) after a time [s]; NaN where they never part, or the
-    record ends before their speed falls."""
-    found = largest_return_speed(history["time"], history["v"], time)
-    return tuple(np.nan if value is None else value for value in found)
+def _return(run, row):
+    """NaN where the halves never part, or the record ends before their speed falls."""
+    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run)[0].time)
+    return [np.nan if value is None else value for value in found]
 
 
 def _changes(run, row):
@@ -168,6 +140,11 @@ def _changes(run, row):
     times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
     parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
     return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]
+
+
+def _channels_until(name, when, **more):
+    meaning = "{}, change from the start to {} (kinetic: what is left)"
+    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when), **more) for c in CHANNELS)
 
 
 OUTCOME = group(
@@ -179,23 +156,21 @@ OUTCOME = group(
 _largest = lambda run: float(outcome_of_run(run).mass_fractions[0])
 LARGEST = one("largest_fraction", "", "fraction of the mass in the largest piece", _largest)
 _contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
-_COORDINATION = one("coordination", "", "mean number of contacts of a grain at the start", _contacts)
-_RETURN = group(
-    lambda run, row: returned(run.history, largest_compression(run)[0].time),
-    Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
-    Column("return_time", "s", "its time", gaps=True, absent=np.nan),
-)
-# Columns without gaps come last, so that a row that was cut short is noticed.
-_WHEN = {"{}_at_return": ("return_time", {"gaps": True, "absent": np.nan}), AT_MAXIMUM: ("t_max", {"absent": 0.0})}
-_WHEN["{}_at_end"] = "the end", {"absent": 0.0}
-_CHANGE = "{}, change from the start to {} (kinetic: what is left)"
-_PARTITION = group(
-    _changes,
-    *(
-        Column(name.format(c), "K(0)", _CHANGE.format(LABELS[c], when), **more)
-        for name, (when, more) in _WHEN.items()
-        for c in CHANNELS
+# What studies of compact aggregates have in common. Columns without gaps come last, so that a row that was cut short
+# is noticed.
+COMPACT = (
+    one("coordination", "", "mean number of contacts of a grain at the start", _contacts),
+    CLOSURE,
+    OUTCOME,
+    group(
+        _return,
+        Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
+        Column("return_time", "s", "its time", gaps=True, absent=np.nan),
+    ),
+    group(
+        _changes,
+        *_channels_until("{}_at_return", "return_time", gaps=True, absent=np.nan),
+        *_channels_until(AT_MAXIMUM, "t_max", absent=0.0),
+        *_channels_until("{}_at_end", "the end", absent=0.0),
     ),
 )
-# What studies of compact aggregates have in common.
-COMPACT = (_COORDINATION, CLOSURE, OUTCOME, _RETURN, _PARTITION)

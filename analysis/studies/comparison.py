@@ -92,16 +92,15 @@ class Row:
 
 def of_table(rows):
     """DataFrame with all numbers of the rows: what comparison.csv holds."""
-    finite = lambda value: value if value is not None and math.isfinite(value) else None
     found = [
         {
             "quantity": row.quantity,
             "paper": row.printed,
-            "low": finite(row.limits[0]) if row.paper is not None else None,
-            "high": finite(row.limits[1]) if row.paper is not None else None,
+            "low": None if row.paper is None else row.limits[0],
+            "high": None if row.paper is None else row.limits[1],
             "source": row.source,
             "paper_runs": row.runs if row.printed else None,
-            "ours": finite(row.ours.value),
+            "ours": row.ours.value,
             "error": row.ours.error,
             "pairs": row.ours.pairs,
             "counted": row.ours.counted,
@@ -112,23 +111,20 @@ def of_table(rows):
         }
         for row in rows
     ]
-    whole = {"paper_runs": "Int64", "pairs": "Int64"}
-    return pandas.DataFrame(found).astype(whole) if found else pandas.DataFrame(columns=["quantity", "text"])
+    if not found:
+        return pandas.DataFrame(columns=["quantity", "text"])
+    return pandas.DataFrame(found).replace([-np.inf, np.inf], np.nan).astype({"paper_runs": "Int64", "pairs": "Int64"})
 
 
 def as_text(rows):
-    """DataFrame of text (quantity, paper, ours, difference, word), as pages and terminals show it."""
-    cells = [
-        (
-            row.quantity,
-            row.printed,
-            NOT_RUN if row.word == NOT_RUN else str(row.ours),
-            "" if row.difference is None else f"{row.difference + 0.0:.1f}",
-            "" if row.word == NOT_RUN else row.word,
-        )
-        for row in rows
-    ]
-    return pandas.DataFrame(cells, columns=["quantity", "paper", "ours", "difference", " "], dtype=str)
+    """The table of pages and terminals, lines of words: its head, then quantity, paper, ours, difference, word."""
+    yield "quantity", "paper", "ours", "difference", " "
+    for row in rows:
+        difference = "" if row.difference is None else f"{row.difference + 0.0:.1f}"
+        if row.word == NOT_RUN:
+            yield row.quantity, row.printed, NOT_RUN, difference, ""
+        else:
+            yield row.quantity, row.printed, str(row.ours), difference, row.word
 
 
 def words_of(rows, independent):
@@ -150,15 +146,14 @@ def counted(rows):
     )
 
 
-def markdown_table(table):
-    """A DataFrame of text as Markdown (str)."""
-    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
-    cells = [" | ".join(cell.replace("|", "\\|") for cell in row) for row in rows]
-    return "\n".join([f"| {cells[0]} |", "|" + "---|" * len(table.columns), *(f"| {row} |" for row in cells[1:])])
+def markdown_table(rows):
+    """as_text() in Markdown (str)."""
+    head, *lines = (" | ".join(cell.replace("|", "\\|") for cell in cells) for cells in as_text(rows))
+    return "\n".join([f"| {head} |", "|" + "---|" * 5, *(f"| {line} |" for line in lines)])
 
 
-def text_table(table):
+def text_table(rows):
     """The same for a terminal, words to the left."""
-    rows = [list(map(str, table.columns)), *table.astype(str).to_numpy().tolist()]
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
+    lines = list(as_text(rows))
+    widths = [max(map(len, column)) for column in zip(*lines)]
+    return "\n".join("  ".join(map(str.ljust, cells, widths)).rstrip() for cells in lines)

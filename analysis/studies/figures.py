@@ -1,6 +1,5 @@
 """The figures of studies: curves of estimates beside what a paper has, and states of collisions."""
 
-from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 from ..figures.collision import draw_view, reach
 from ..figures.style import legend, letter, panels, styled
 from ..runs.files import read_arrays
-from ..runs.folder import open_run
+from ..runs.folder import State, open_run
 
 COLOURS = ("#2166ac", "#e08214", "#1b8a8f", "#c62828", "#8c5a2b", "#d16ba5", "#111111")  # none the paper's
 MARKERS = "osD^vP*"
@@ -72,27 +71,33 @@ def curves(
     columns = min(len(shown), 3 if len(shown) > 4 else 4)
     figure, axes = panels(-(-len(shown) // columns), columns, 4.4, 3.8)
     flat = axes.ravel()
-    for place, word in zip(flat, shown):
+    for place in flat[len(shown) :]:
+        place.set_axis_off()
+    used = flat[: len(shown)]
+    for place, word in zip(used, shown):
         for k, name in enumerate(words(colour)):
             head = tuple(own for own, named in ((word, panel), (name, colour)) if named)
             own = {key[-1]: point for key, point in found.items() if key[:-1] == head}
             if own:
                 shade = palette[name] if palette else COLOURS[k % 7]
                 points(place, list(own), list(own.values()), shade, name or None, MARKERS[k % 7], line)
-        _dress(place, word, log, paper, level)
+        for name in log:
+            getattr(place, f"set_{name}scale")("log")
+        if level is not None:
+            place.axhline(level, color="0.6", lw=0.8, zorder=0)
+        if paper:
+            paper(place, word)
+        place.set_title(word, fontsize=10)
         place.set_xlabel(x_label or x)
-    for place in flat[len(shown) :]:
-        place.set_axis_off()
-    low, high = zip(*(place.get_ylim() for place in flat[: len(shown)]))
-    low, high = limits or (min(low), max(high))
-    left, right = zip(*(place.get_xlim() for place in flat[: len(shown)]))
-    for place in flat[: len(shown)]:
-        place.set(xlim=(min(left), max(right)), ylim=(low, high))
+    low, high = zip(*(place.get_ylim() for place in used))
+    left, right = zip(*(place.get_xlim() for place in used))
+    for place in used:
+        place.set(xlim=(min(left), max(right)), ylim=limits or (min(low), max(high)))
         plain_ticks(place, log)
     for row in axes:
         row[0].set_ylabel(y_label)
     legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[1])), fontsize=8)
-    letter(flat[: len(shown)], "")
+    letter(used, "")
     return figure
 
 
@@ -115,26 +120,6 @@ def plain_ticks(axes, log):
         axis.set_minor_formatter(NullFormatter())
 
 
-def _dress(axes, word, log, paper, level):
-    for name in log:
-        getattr(axes, f"set_{name}scale")("log")
-    if level is not None:
-        axes.axhline(level, color="0.6", lw=0.8, zorder=0)
-    if paper:
-        paper(axes, word)
-    axes.set_title(word, fontsize=10)
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """A state: time [s], position (N,3) [m], radius (N,) [m], aggregate (N,) int."""
-
-    time: float
-    position: np.ndarray
-    radius: np.ndarray
-    aggregate: np.ndarray
-
-
 @styled
 def snapshots(runs, folder, title):
     """Figure of the runs of which a folder keeps states (RUN.npz), a row of panels each with its title(row of the
@@ -148,9 +133,9 @@ def snapshots(runs, folder, title):
     figure, axes = panels(len(rows), max(map(len, shown)), 2.7, 2.75)
     for places, row, states in zip(axes, rows, shown):
         for place, state in zip(places, states):
-            centred = replace(state, position=state.position - state.position.mean(axis=0))
-            half = 1.05 * reach(centred, HELD) / row.grain_radius
-            draw_view(place, centred, row.grain_radius, half)
+            state.position = state.position - state.position.mean(axis=0)
+            half = 1.05 * reach(state, HELD) / row.grain_radius
+            draw_view(place, state, row.grain_radius, half)
             bar = max(n * 10**k for n in (1, 2, 5) for k in range(5) if n * 10**k <= max(0.6 * half, 1))
             place.plot([-0.92 * half, -0.92 * half + bar], [-0.92 * half] * 2, color="0.1", lw=2.5)
             place.text(-0.92 * half, -0.88 * half, f"{bar:g} $r$", fontsize=8, va="bottom")
@@ -164,8 +149,7 @@ def _states(row, file):
     kept = read_arrays(file, ("time", "unit", "position", "radius", "aggregate"))
     if isinstance(row.folder, str):
         states = open_run(row.folder).states
-        found = [states[k] for k in sorted({states.nearest(time) for time in kept["time"]})]
-        return [Snapshot(own.time, own.position, own.radius, own.aggregate) for own in found]
-    positions, radius = kept["position"] * float(kept["unit"]), kept["radius"].astype(float)
-    of_all = radius, kept["aggregate"].astype(int)
-    return [Snapshot(float(time), position, *of_all) for time, position in zip(kept["time"], positions)]
+        return [states[k] for k in sorted({states.nearest(time) for time in kept["time"]})]
+    grains = {"radius": kept["radius"].astype(float), "aggregate": kept["aggregate"].astype(int)}
+    positions = kept["position"] * float(kept["unit"])
+    return [State(time, position=position, **grains) for time, position in zip(kept["time"], positions)]

@@ -1,7 +1,7 @@
 """From paths to one table with the runs of a study."""
 
 import errno
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import pandas
 
@@ -20,13 +20,13 @@ LENGTH = "duration", "endWhenApart"  # how long a run is: of two of one collisio
 
 @dataclass
 class Gathered:
-    """Runs of a study: table (DataFrame, a row a run; None where there is none), provenance (runs.collect), notes
-    (a line for each run left out) and problems (one for each path or run that could not be read)."""
+    """Runs of a study: notes (a line for each run left out), problems (one for each path or run that could not be
+    read), table (DataFrame, a row a run; None where there is none), provenance (runs.collect)."""
 
+    notes: list
+    problems: list
     table: pandas.DataFrame = None
     provenance: dict = None
-    notes: list = field(default_factory=list)
-    problems: list = field(default_factory=list)
 
     def csv(self, study):
         """The table of runs as a file (str)."""
@@ -40,33 +40,29 @@ def gather(study, paths):
     before a folder (whose states serve figures), and of folders the longest run. Of runs that must be alike and are
     not none is counted."""
     collection = collect(paths, study.scene)
-    found = Gathered(notes=list(collection.notes), problems=list(collection.problems))
-    parts, taken = [], {}
+    found = Gathered(list(collection.notes), list(collection.problems))
+    rows, origins = {}, []
     for file in collection.tables:
         try:
-            table, origin = _read(study, file)
+            own, origin = _read(study, file)
         except TableError as error:
             found.problems.append(str(error))
             continue
-        keys = [_key(study, row) for row in table.to_dict("records")]
-        new = [key not in taken for key in keys]
-        if not all(new):
-            found.notes.append(f"{file}: {new.count(False)} runs are in a table before it, which counts")
-        taken.update((key, f"{file}, {run}") for key, run, counts in zip(keys, table[RUN], new) if counts)
-        parts.append((table[new], origin))
+        if known := len(own.keys() & rows.keys()):
+            found.notes.append(f"{file}: {known} runs are in a table before it, which counts")
+        rows |= {key: row for key, row in own.items() if key not in rows}
+        origins.append(origin)
     unlike = _unlike(study, collection.runs) if study.alike else None
     if unlike:
         found.problems.append(unlike)
         return found
-    folders = {}
-    measured = _measure(study, collection.runs, taken, found, folders)
+    measured = _measure(study, collection.runs, rows, found)
     if measured:
-        table = make_table([(run.path, values) for run, values in measured])
-        parts.append((table, provenance([run for run, _ in measured])))
+        origins.append(provenance([run for run, _ in measured]))
+    parts = [pandas.DataFrame(rows.values()), make_table((run.path, values) for run, values in measured)]
+    parts = [part for part in parts if len(part)]
     if parts:
-        tables, origins = zip(*parts)
-        found.table = pandas.concat(tables, ignore_index=True)
-        found.table[FOLDER] = [folders.get(_key(study, row), row[FOLDER]) for row in found.table.to_dict("records")]
+        found.table = pandas.concat(parts, ignore_index=True)
         found.provenance = {**joined(origins), "runs": len(found.table)} if len(origins) > 1 else origins[0]
     return found
 
@@ -78,18 +74,19 @@ def require_own(file, name):
 
 
 def _read(study, file):
+    """({key: row}, provenance) of a table."""
     table, head = read_table(file, study.columns)
     if head.get("study") != study.name or not isinstance(head.get("provenance"), dict):
         raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
-    keys = [_key(study, row) for row in table.to_dict("records")]
-    if len(set(keys)) < len(keys):
+    rows = {_key(study, row): row for row in table.to_dict("records")}
+    if len(rows) < len(table):
         raise TableError(f"{file}: two runs have the same {', '.join(study.scene.key)}")
-    return table, head["provenance"]
+    return rows, head["provenance"]
 
 
-def _measure(study, runs, taken, found, folders):
-    """[(RunFolder, {column: value})] of those not in a table; folders takes {key: path} of those that are."""
-    measured = {}
+def _measure(study, runs, rows, found):
+    """[(RunFolder, {column: value})] of those that are not in a table; rows of a table get their folder."""
+    measured, same = {}, f"the same {', '.join(study.scene.key)} as"
     for run in progress(runs, "reading runs"):
         try:
             values = study.measure(run)
@@ -99,10 +96,10 @@ def _measure(study, runs, taken, found, folders):
         except RunFolderError as error:
             found.problems.append(str(error))
             continue
-        key, same = _key(study, values), f"the same {', '.join(study.scene.key)} as"
-        if key in taken:
-            folders.setdefault(key, str(run.path))
-            found.notes.append(f"{run.path}: {same} {taken[key]}, counted once")
+        key = _key(study, values)
+        if key in rows:
+            rows[key][FOLDER] = rows[key][FOLDER] or str(run.path)
+            found.notes.append(f"{run.path}: {same} {rows[key][RUN]} of a table, counted once")
         elif key in measured:
             short, measured[key] = sorted([(run, values), measured[key]], key=_end)
             found.notes.append(f"{short[0].path}: {same} {measured[key][0].path}, which is as long or longer, left out")
@@ -125,11 +122,12 @@ def _unlike(study, runs):
     rows, usual = [(run.path, parameters_of(run)) for run in runs], {}
     for _, row in reversed(rows):
         usual.update(row)
-    strange = [name for name in study.scene.values if rows and name not in usual]
-    if strange:
-        return f"{strange[0]}: no run has this parameter{suggested(strange[0], usual)}"
-    found = frame([(path, {**usual, **row}) for path, row in rows]) if rows else None
-    names = [name for name in varied(found) if name not in (*study.scene.key, *LENGTH)] if rows else []
-    return (
-        differing(found, names, "name them in varied, or give collision_study() one value of each") if names else None
-    )
+    if not rows:
+        return None
+    for name in study.scene.values:
+        if name not in usual:
+            return f"{name}: no run has this parameter{suggested(name, usual)}"
+    found = frame([(path, {**usual, **row}) for path, row in rows])
+    names = [name for name in varied(found) if name not in (*study.scene.key, *LENGTH)]
+    must = "name them in varied, or give collision_study() one value of each"
+    return differing(found, names, must) if names else None

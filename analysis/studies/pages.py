@@ -9,7 +9,7 @@ from html import escape
 import pandas
 
 from ..version import version_text
-from .comparison import as_text, markdown_table, words_of
+from .comparison import markdown_table, words_of
 from .study import GALLERY
 
 START, END = "<!-- table: made by `make gallery` -->", "<!-- end of the table -->"
@@ -25,7 +25,7 @@ class PageError(ValueError):
 
 def table_of(rows, independent):
     """The table of a page (str, Markdown) of comparison.Rows, and what its words mean."""
-    return f"{markdown_table(as_text(rows))}\n\n{words_of(rows, independent)}"
+    return f"{markdown_table(rows)}\n\n{words_of(rows, independent)}"
 
 
 def filled(file, text, rows, independent):
@@ -46,7 +46,7 @@ def filled(file, text, rows, independent):
         if quantity not in known:
             raise PageError(f"{file}: its table has {quantity}: must be a quantity of comparison.csv")
     require_numbers(file, before + after, [str(row.ours) for row in rows])
-    shown = markdown_table(as_text([known[quantity] for quantity in listed]))
+    shown = markdown_table([known[quantity] for quantity in listed])
     return f"{before}{START}\n\n{shown}\n\n{words_of(rows, independent)}\n\n{END}{after}"
 
 

@@ -12,7 +12,7 @@ from typing import Callable
 from ..printable import suggested
 from ..runs.collect import Scene
 from ..runs.format import PARAMETER_WORDS
-from .columns import LARGEST, OUTCOME, VELOCITY, flat, parameter, row_of
+from .columns import LARGEST, OUTCOME, VELOCITY, parameter, row_of
 
 NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
@@ -32,7 +32,7 @@ class Study:
     title, question : str
     scene : runs.collect.Scene
         Which runs belong to it, and the columns that tell two runs apart.
-    measured : tuple of columns.Columns
+    measured : tuple of columns.group()
         What is measured of a run: the columns of runs.csv.
     pair : tuple of str
         Columns that tell independent pairs of aggregates apart.
@@ -65,7 +65,7 @@ class Study:
     @property
     def columns(self):
         """(runs.table.Column, ...) of the table."""
-        return flat(self.measured)
+        return tuple(column for _, columns in self.measured for column in columns)
 
     def measure(self, run):
         """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""
