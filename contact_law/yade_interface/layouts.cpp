@@ -37,8 +37,6 @@ SIZE(Serializable, 24);
 SIZE(Indexable, 8);
 
 SIZE(Material, 80);
-AT(Material, id, 32);
-AT(Material, label, 40);
 AT(Material, density, 72);
 SIZE(ElastMat, 96);
 AT(ElastMat, young, 80);
@@ -49,12 +47,8 @@ AT(State, se3, 48 + mutexSize);
 AT(State, vel, 104 + mutexSize);
 AT(State, mass, 128 + mutexSize);
 AT(State, angVel, 136 + mutexSize);
-AT(State, angMom, 160 + mutexSize);
 AT(State, inertia, 184 + mutexSize);
-AT(State, refPos, 208 + mutexSize);
 AT(State, blockedDOFs, 264 + mutexSize);
-AT(State, isDamped, 268 + mutexSize);
-AT(State, densityScaling, 272 + mutexSize);
 
 SIZE(Shape, 96);
 SIZE(Sphere, 104);
@@ -70,11 +64,7 @@ AT(Body, flags, 32);
 AT(Body, material, 40);
 AT(Body, state, 56);
 AT(Body, shape, 72);
-AT(Body, bound, 88);
-AT(Body, intrs, 104);
 AT(Body, clumpId, 152);
-AT(Body, iterBorn, 160);
-AT(Body, timeBorn, 168);
 
 SIZE(IGeom, 32);
 SIZE(ScGeom, 192);
@@ -83,7 +73,6 @@ AT(ScGeom, contactPoint, 56);
 AT(ScGeom, refR1, 80);
 AT(ScGeom, refR2, 88);
 AT(ScGeom, penetrationDepth, 160);
-AT(ScGeom, shearInc, 168);
 
 SIZE(IPhys, 32);
 SIZE(NormPhys, 64);
@@ -94,26 +83,19 @@ AT(NormShearPhys, ks, 64);
 AT(NormShearPhys, shearForce, 72);
 
 SIZE(Interaction, 168);
-AT(Interaction, functorCache, 32);
 AT(Interaction, id1, 88);
 AT(Interaction, id2, 92);
 AT(Interaction, iterMadeReal, 96);
-AT(Interaction, iterLastSeen, 104);
 AT(Interaction, geom, 112);
 AT(Interaction, phys, 128);
 AT(Interaction, cellDist, 144);
-AT(Interaction, linIx, 156);
 AT(Interaction, iterBorn, 160);
 
 // Public members behind the private ones that the plugin reads too.
 SIZE(BodyContainer, 136 + mutexSize + subdomainSize);
 AT(BodyContainer, dirty, 48);
-AT(BodyContainer, insertedBodies, 56);
-AT(BodyContainer, useRedirection, 128);
 SIZE(InteractionContainer, 152 + mutexSize);
 AT(InteractionContainer, dirty, 128);
-AT(InteractionContainer, serializeSorted, 136 + mutexSize);
-AT(InteractionContainer, iterColliderLastRun, 144 + mutexSize);
 
 SIZE(ForceContainer, 264 + mutexSize);
 SIZE(EnergyTracker, 176);
@@ -121,7 +103,6 @@ AT(EnergyTracker, names, 88);
 
 SIZE(Cell, 1104);
 AT(Cell, trsf, 592);
-AT(Cell, refHSize, 664);
 AT(Cell, hSize, 736);
 AT(Cell, prevHSize, 808);
 AT(Cell, velGrad, 880);
@@ -137,28 +118,22 @@ AT(Scene, iter, 408 + mutexSize);
 AT(Scene, subStep, 420 + mutexSize);
 AT(Scene, time, 424 + mutexSize);
 AT(Scene, stopAtIter, 440 + mutexSize);
-AT(Scene, stopAtTime, 448 + mutexSize);
 AT(Scene, isPeriodic, 456 + mutexSize);
 AT(Scene, trackEnergy, 457 + mutexSize);
-AT(Scene, doSort, 458 + mutexSize);
 AT(Scene, tags, 464 + mutexSize + subdomainSize);
 AT(Scene, engines, 488 + mutexSize + subdomainSize);
 AT(Scene, _nextEngines, 512 + mutexSize + subdomainSize);
 AT(Scene, bodies, 536 + mutexSize + subdomainSize);
 AT(Scene, interactions, 552 + mutexSize + subdomainSize);
 AT(Scene, energy, 568 + mutexSize + subdomainSize);
-AT(Scene, materials, 584 + mutexSize + subdomainSize);
 AT(Scene, cell, 624 + mutexSize + subdomainSize);
 
 SIZE(Engine, 104);
 AT(Engine, scene, 24);
 AT(Engine, dead, 64);
-AT(Engine, ompThreads, 68);
-AT(Engine, label, 72);
 SIZE(GlobalEngine, 104);
 SIZE(Functor, 80);
 AT(Functor, scene, 40);
-AT(Functor, label, 48);
 SIZE(IPhysFunctor, 88);
 SIZE(LawFunctor, 88);
 

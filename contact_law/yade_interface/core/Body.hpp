@@ -48,18 +48,7 @@ protected:
 // Where a body is and how it moves.
 class State : public Serializable, public Indexable {
 public:
-	enum {
-		DOF_NONE = 0,
-		DOF_X = 1,
-		DOF_Y = 2,
-		DOF_Z = 4,
-		DOF_RX = 8,
-		DOF_RY = 16,
-		DOF_RZ = 32,
-		DOF_ALL = 63,
-		DOF_XYZ = 7,
-		DOF_RXRYRZ = 56
-	};
+	enum { DOF_ALL = 63 };
 
 	State();
 	~State() override;
@@ -87,7 +76,6 @@ public:
 	using id_t = int;
 	using mask_t = int;
 	using MapId2IntrT = std::map<id_t, shared_ptr<Interaction>>;
-	static constexpr id_t ID_NONE = -1;
 
 	Body();
 	~Body() override;
@@ -95,11 +83,7 @@ public:
 	const id_t& getId() const { return id; }
 
 	// exported by libyade; each reads one or two bits of flags
-	bool isDynamic() const;
-	bool isClump() const;
 	bool isClumpMember() const;
-	bool isStandalone() const;
-	bool isAspherical() const;
 	bool isBounded() const;
 
 	id_t id;

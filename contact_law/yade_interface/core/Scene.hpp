@@ -27,9 +27,6 @@ public:
 	[[gnu::always_inline]] size_t size() const { return body.size(); }
 	[[gnu::always_inline]] shared_ptr<Body>& operator[](unsigned int id) { return body[id]; }
 	[[gnu::always_inline]] const shared_ptr<Body>& operator[](unsigned int id) const { return body[id]; }
-	[[gnu::always_inline]] bool exists(Body::id_t id) const { return id >= 0 && size_t(id) < body.size() && bool(body[size_t(id)]); }
-
-	Body::id_t insert(shared_ptr<Body>);
 
 private:
 	BodyContainer(); // made by YADE only
@@ -61,11 +58,7 @@ public:
 	[[gnu::always_inline]] size_t size() { return currSize; } // not const in YADE either
 	[[gnu::always_inline]] const shared_ptr<Interaction>& operator[](size_t i) const { return linIntrs[i]; }
 
-	const shared_ptr<Interaction>& find(Body::id_t id1, Body::id_t id2);
 	bool insert(const shared_ptr<Interaction>&);
-	bool erase(Body::id_t id1, Body::id_t id2, int linPos);
-	void requestErase(const shared_ptr<Interaction>&);
-	void eraseNonReal();
 	void clear();
 
 private:
@@ -123,7 +116,6 @@ public:
 	// concurrent first calls of a name, and ids are stale after O.energy.clear().
 	void add(const Real& value, const std::string& name, int& id, bool reset = false);
 	std::map<std::string, int> names; // ids
-	Real total() const;
 	// What O.energy[name] = value calls, with no Python in it; makes the name if it is not there.
 	void setItem_py(const std::string& name, Real value);
 

@@ -14,8 +14,8 @@ namespace yade {
 
 namespace Attr {
 	// noSave: not written by O.save; readonly: Python cannot assign; triggerPostLoad: assigning from Python calls callPostLoad;
-	// hidden: Python doesn't see it, but it is saved. The rest are hints for YADE's windows and change nothing here.
-	enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8, noResize = 16, noGui = 32 };
+	// hidden: Python doesn't see it, but it is saved.
+	enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8 };
 	constexpr int join(int given = 0) { return given; } // flags may be left empty
 } // namespace Attr
 
@@ -128,19 +128,10 @@ namespace attributes {
 	        BOOST_PP_STRINGIZE(YADE_INTERFACE_NAME_(a)),                                                                               \
 	                YADE_INTERFACE_DOC_(a) " :ydefault:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_DEFAULT_(a)) "` :yattrtype:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_TYPE_(a)) "`" });
 
-#define YADE_INTERFACE_INITIALIZE_(r, data, i, pair)                                                                                       \
-	BOOST_PP_IF(i, BOOST_PP_COMMA, BOOST_PP_TUPLE_EAT(0))() BOOST_PP_TUPLE_ELEM(2, 0, pair)(BOOST_PP_TUPLE_ELEM(2, 1, pair))
-
-#define YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(                                                                                     \
-        Class, Base, doc, attributeList, deprecated, initializers, constructor, pythonExtras)                                              \
-	static_assert(BOOST_PP_SEQ_SIZE(deprecated) == 0, "deprecated attributes are not supported here");                                 \
-                                                                                                                                           \
+#define YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributeList, constructor, pythonExtras)                                      \
 public:                                                                                                                                    \
 	BOOST_PP_SEQ_FOR_EACH(YADE_INTERFACE_DECLARE_, ~, attributeList)                                                                   \
-	Class() BOOST_PP_IF(BOOST_PP_SEQ_SIZE(initializers), :, ) BOOST_PP_SEQ_FOR_EACH_I(YADE_INTERFACE_INITIALIZE_, ~, initializers)     \
-	{                                                                                                                                  \
-		constructor;                                                                                                               \
-	}                                                                                                                                  \
+	Class() { constructor; }                                                                                                           \
 	template <class Visitor> static void visitAttributes(Visitor&& visit)                                                              \
 	{                                                                                                                                  \
 		(void)visit;                                                                                                               \

@@ -89,14 +89,6 @@ SAVED_BY_YADE(Serializable)
 	namespace yade {                                                                                                                   \
 		static_assert(true, "")
 
-#define YADE_CLASS_BASE_DOC(Class, Base, doc) YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, , , , , )
-#define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attributes)                                                                            \
-	YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributes, , , , )
+#define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attributes) YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributes, , )
 #define YADE_CLASS_BASE_DOC_ATTRS_CTOR(Class, Base, doc, attributes, constructor)                                                          \
-	YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributes, , , constructor, )
-#define YADE_CLASS_BASE_DOC_ATTRS_PY(Class, Base, doc, attributes, python)                                                                 \
-	YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributes, , , , python)
-#define YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributes, constructor, python)                                               \
-	YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributes, , , constructor, python)
-#define YADE_CLASS_BASE_DOC_ATTRS_INIT_CTOR_PY(Class, Base, doc, attributes, initializers, constructor, python)                            \
-	YADE_CLASS_BASE_DOC_ATTRS_DEPREC_INIT_CTOR_PY(Class, Base, doc, attributes, , initializers, constructor, python)
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributes, constructor, )
