@@ -4,3 +4,7 @@ To be read in this order: columns (of the table of runs), rules (which outcome a
 and the region that the runs fill), model (fitted to the runs), scores (on runs that it was not fitted to),
 outcome_table and make (the model on a grid, for other programs), query (analysis.outcome), adapters (DustPy, Fortran).
 """
+
+NO_SKLEARN = (
+    "analysis: scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])"
+)

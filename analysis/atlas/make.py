@@ -17,6 +17,7 @@ from ..printable import FAILED, complain
 from ..runs.table import TableError
 from ..theory import GRAIN_RADIUS, ICE
 from ..version import version
+from . import NO_SKLEARN
 from .columns import read_runs
 from .outcome_table import (
     COLUMNS,
@@ -183,7 +184,7 @@ def main(folder=FOLDER):
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
     except ModuleNotFoundError:
-        complain("scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])")
+        print(NO_SKLEARN, file=sys.stderr)
     except (TableError, ValueError) as error:
         complain(error)
     else:

@@ -158,7 +158,7 @@ def in_words(options):
     """Lines (str) for the options of commands.outcome: the query, whether it is within the data, probabilities, what is
     left, and the nearest runs."""
     pair = options.velocity, options.projectile, options.target, options.filling
-    impact = None if options.impact == "averaged" else options.impact
+    impact = options.impact
     more = {"material": options.material, "grain_radius": options.grain_radius, "impact": impact}
     found = outcome(*pair, maxwell=options.maxwell, structure=options.structure, **more)
     answer = {name: float(value) for name, value in found.items()}

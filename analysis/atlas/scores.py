@@ -5,24 +5,28 @@
 brier     mean over runs of the sum over outcomes of (p - observed)^2
 more      brier less that of the atlas, and `error`, its standard error, runs paired
 log_loss  mean of -ln of the probability of what was observed
-miss      mean of |p - observed| over bins of p a tenth wide, of all outcomes together
 """
 
 import sys
 
 import numpy as np
 import pandas
-from sklearn.ensemble import HistGradientBoostingClassifier, RandomForestClassifier
-from sklearn.neighbors import KNeighborsClassifier
-from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import StandardScaler
-from sklearn.tree import DecisionTreeClassifier
 
+from . import NO_SKLEARN
 from .columns import read_runs
-from .model import SEED, Model, chances, classifier, is_kind, log_loss
 from .outcome_table import PROBABILITIES, read_outcomes
 from .query import RUNS_FILE, outcomes_file
 from .variables import STRUCTURES, energy, fit_and_held_out, of_structure, scaled, variables
+
+try:
+    from sklearn.ensemble import HistGradientBoostingClassifier, RandomForestClassifier
+    from sklearn.tree import DecisionTreeClassifier
+
+    from .model import SEED, Model, chances, classifier, is_kind, log_loss
+except ModuleNotFoundError:
+    if __name__ == "__main__":
+        sys.exit(NO_SKLEARN)
+    raise
 
 
 def coordinates(table, *columns):
@@ -44,18 +48,16 @@ def energy_a_grain(table):
 BOOSTED = HistGradientBoostingClassifier(
     learning_rate=0.03, max_iter=150, max_leaf_nodes=4, min_samples_leaf=10, l2_regularization=1.0, random_state=SEED
 )
-# Name: classifier, and what it is shown of a table of runs. A tree of depth 1 is one threshold.
+# Name: classifier, and its features of a table of runs. A tree of depth 1 is one threshold.
 CLASSIFIERS = {
     "one model for all structures": (classifier(), coordinates),
     "and contacts a grain": (
         classifier(),
         lambda table: coordinates(table, table.coordination_target, table.coordination_projectile),
     ),
-    "and the material": (classifier(), lambda table: coordinates(table, table.material == "silicate")),
     "second order": (classifier(order=2), coordinates),
     "gradient boosting": (BOOSTED, coordinates),
     "random forest": (RandomForestClassifier(100, min_samples_leaf=2, random_state=SEED), coordinates),
-    "nearest 5 runs": (make_pipeline(StandardScaler(), KNeighborsClassifier(5)), coordinates),
     "one velocity": (DecisionTreeClassifier(max_depth=1), velocity),
     "one impact energy a grain": (DecisionTreeClassifier(max_depth=1), energy_a_grain),
 }
@@ -82,22 +84,10 @@ def scores(table):
     squares = {name: ((p - is_kind(held.outcome)) ** 2).sum(axis=1) for name, p in predicted.items()}
     rows = []
     for name, p in predicted.items():
-        more, bins = squares[name] - squares["the atlas"], reliability(p, held.outcome)
-        miss = np.average((bins.p - bins.observed).abs(), weights=bins.number)
+        more = squares[name] - squares["the atlas"]
         own = {"brier": squares[name].mean(), "more": more.mean(), "error": more.std() / len(more) ** 0.5}
-        rows.append({"predictor": name, **own, "log_loss": log_loss(p, held.outcome), "miss": miss})
+        rows.append({"predictor": name, **own, "log_loss": log_loss(p, held.outcome)})
     return pandas.DataFrame(rows)
-
-
-def reliability(p, outcomes):
-    """DataFrame, a row a bin of probability: mean p, observed fraction, number; p (n, 5) of KINDS, outcomes (n,).
-
-    >>> reliability(np.array([[1.0, 0, 0, 0, 0]]), ["sticking"]).observed.tolist()
-    [0.0, 1.0]
-    """
-    p, hit = p.ravel(), is_kind(outcomes).ravel().astype(float)
-    table = pandas.DataFrame({"p": p, "observed": hit, "number": 1})
-    return table.groupby(np.minimum((p * 10).astype(int), 9)).agg({"p": "mean", "observed": "mean", "number": "sum"})
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ def summary(options):
     if options.json:
         of_run = summarise
     elif options.long:
-        of_run = lambda run: long_text(run, summarise(run))
+        of_run = lambda run: long_text(run, row(run, structure=False))
     else:
         of_run = lambda run: row(run, structure=False)
     measured, problems = measure(options.runs, of_run)
@@ -64,23 +64,18 @@ def _add_outcome(commands):
         "the answer is that of the nearest data.",
     )
     positive = number(lambda value: 0 < value < float("inf"), "a number > 0")
-    grains = number(lambda value: 1 <= value < float("inf"), "a number >= 1")
-    filling = number(lambda value: 0 < value <= 1, "a number > 0 and at most 1")
-    radius = number(lambda value: 1e-9 <= value <= 1e-3, "1e-09 to 0.001 [m]")
-    impact = number(lambda b: 0 <= b <= 1, "0 to 1, or averaged")
-    for name, kind, about in (
-        ("velocity", positive, "relative velocity [m/s]"),
-        ("projectile", grains, "grains of one aggregate"),
-        ("target", grains, "grains of the other"),
-        ("filling", filling, "volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g"),
+    parser.add_argument("--velocity", type=positive, required=True, metavar="X", help="relative velocity [m/s]")
+    for name, about in (
+        ("projectile", "grains of one aggregate"),
+        ("target", "grains of the other"),
+        ("filling", "volume filling factor of both, of spheres of radius (5/3)^(1/2) R_g"),
     ):
-        parser.add_argument(f"--{name}", type=kind, required=True, metavar="X", help=about)
+        parser.add_argument(f"--{name}", type=float, required=True, metavar="X", help=about)
     parser.add_argument(
         "--impact",
-        default="averaged",
-        type=lambda text: text if text == "averaged" else impact(text),
+        type=float,
         metavar="B",
-        help="impact parameter, 0 to 1, over the sum of these radii; averaged: uniform in b^2",
+        help="impact parameter, 0 to 1, over the sum of these radii (default: averaged, uniform in b^2)",
     )
     parser.add_argument(
         "--maxwell", action="store_true", help="velocity is the root mean square of a Maxwell distribution of speeds"
@@ -94,7 +89,7 @@ def _add_outcome(commands):
     parser.add_argument("--material", default="ice", help="of the grains, ice or silicate")
     parser.add_argument(
         "--grain-radius",
-        type=radius,
+        type=float,
         metavar="R",
         help="of the grains [m] (default: that of the material, 1e-07 of ice and 6e-07 of silicate)",
     )

@@ -32,10 +32,9 @@ def add_parsers(commands):
 
 def status(options):
     """Exit status: 0, or 2 when a path holds no run or a run has failed."""
-    from ..report.status import line
     from ..runs.collect import run_folders
     from ..runs.status import FAILED as HAS_FAILED
-    from ..runs.status import state
+    from ..runs.status import line, state, total
 
     found = run_folders(options.runs)
     states = {str(path): state(path) for path, problem in found if not problem}
@@ -46,26 +45,10 @@ def status(options):
         width = max(len(printable(name)) for name in states)
         for name, of_run in states.items():
             print(line(printable(name).ljust(width), of_run, of_run.left))
-        print(_total(states.values()))
+        print(total(states.values()))
     for problem in problems:
         complain(problem)
     return FAILED if problems or any(of_run.kind == HAS_FAILED for of_run in states.values()) else 0
-
-
-def _total(states):
-    """The line below: how many of each, and the time left."""
-    from ..report.status import counts, duration_text
-    from ..runs.status import RUNNING, WAITING
-
-    text = f"{len(states)} runs: {counts(states)}"
-    for kind, sum_up, what in (
-        (RUNNING, max, "left until the last running one ends"),
-        (WAITING, sum, "for the waiting ones, one after another"),
-    ):
-        left = [s.left for s in states if s.kind == kind]
-        if left:
-            text += "; " + ("unknown time" if None in left else duration_text(sum_up(left))) + f" {what}"
-    return text
 
 
 def verify(options):

@@ -155,7 +155,9 @@ def _draw(study, runs, folder, readme):
     with own_errors(study.file):
         for name, caption, figure in progress(study.figures(runs), "drawing"):
             file = folder / f"{name}.png"
-            if figure is not None and (readme is None or file.name in readme):
+            if figure is None:
+                file.unlink(missing_ok=True)  # of other runs
+            elif readme is None or file.name in readme:
                 save_small(figure, file)
                 drawn.append((caption, file))
     return drawn

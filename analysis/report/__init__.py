@@ -1,1 +1,1 @@
-"""Reports on runs: their numbers and tables (rows), the same as text (text), what has become of them (status)."""
+"""Reports on runs: their numbers and tables (rows), and the same as text (text)."""

@@ -72,7 +72,7 @@ def take(folder):
         if before and not _is_over(before):
             must = f"must be another folder, or, if that run was killed, {file} removed"
             raise InUse(f"another run is writing there, {before}; {must}")
-        if before:
+        if before or (os.path.exists(file) and not os.path.getsize(file)):
             os.unlink(file)
         job, restarts = this_job()
         own = Lock(*this_machine(), os.getpid(), job, restarts)
@@ -116,12 +116,15 @@ def under_way(folder):
 
 
 def read_lock(folder):
-    """Lock of a folder (path), or None; one that can't be read has the defaults."""
+    """Lock of a folder (path), or None; one that can't be read has the defaults.
+
+    One that is empty is none: a run was killed as it made the file, or holds the folder and is about to write it."""
     file = Path(folder) / LOCK_FILE
     try:
         return Lock(**read_json(file))
     except (RunFolderError, TypeError):
-        return Lock() if file.exists() else None
+        with suppress(OSError):
+            return Lock() if os.path.getsize(file) else None
 
 
 def is_held(folder):

@@ -1,11 +1,14 @@
-"""What has become of a run, and whether its files are as the run has left them, from its folder alone: of any
-machine."""
+"""What has become of a run of any machine, from its folder alone, also as a line of text; and whether its files are as
+the run has left them."""
 
 import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from tqdm import tqdm
+
+from ..printable import printable
 from .files import RunFolderError, read_arrays, read_bytes
 from .folder import read_ended, read_record, state_files
 from .format import CHECKPOINT_FOLDER, ENDED_FILE, HISTORY_FILE, RUN_FILE
@@ -137,3 +140,47 @@ def _wrong(check, *of):
     except RunFolderError as error:
         return [str(error)]
     return []
+
+
+# As text.
+
+WIDTH = 20  # of a bar
+
+
+def duration_text(seconds):
+    """02:03 or 1:02:03 for a number of seconds.
+
+    >>> duration_text(123), duration_text(3723.4)
+    ('02:03', '1:02:03')
+    """
+    return tqdm.format_interval(seconds)
+
+
+def counts(states):
+    """How many are done, running, waiting and failed, in words."""
+    return ", ".join(f"{sum(state.kind == kind for state in states)} {kind}" for kind in KINDS)
+
+
+def line(name, state, left=None):
+    """One run: its state, name, bar, time left [s] (None: unknown) and note."""
+    text, note = f"  {state.kind:8s} {printable(name):24s}", printable(state.note)
+    if state.kind == FAILED:
+        return f"{text} {note}"
+    if state.kind == DONE:
+        return f"{text} {duration_text(state.seconds or 0):>8s}"
+    filled = int(WIDTH * state.progress)
+    bar = f' [{"#" * filled}{"." * (WIDTH - filled)}] {100 * state.progress:5.1f} %' if state.kind == RUNNING else ""
+    return text + bar + ("" if left is None else f" {duration_text(left):>8s} left") + (f"  {note}" if note else "")
+
+
+def total(states):
+    """How many there are of each kind, and the time left."""
+    text = f"{len(states)} runs: {counts(states)}"
+    for kind, sum_up, what in (
+        (RUNNING, max, "left until the last running one ends"),
+        (WAITING, sum, "for the waiting ones, one after another"),
+    ):
+        left = [own.left for own in states if own.kind == kind]
+        if left:
+            text += "; " + ("unknown time" if None in left else duration_text(sum_up(left))) + f" {what}"
+    return text

@@ -23,8 +23,8 @@ class NotMeasured(Exception):
 
 
 def group(of, *columns):
-    """Columns (runs.table.Column) that are measured together: of(run (RunFolder), row ({column: value} of those before))
-    gives their values, in the same order; NotMeasured or RunFolderError where it can't."""
+    """Columns (runs.table.Column) that are measured together: of(run, row) gives their values in the same order, of a
+    RunFolder and the {column: value} before; NotMeasured or RunFolderError where it can't."""
     return of, columns
 
 

@@ -69,10 +69,13 @@ def test_a_folder_of_another_machine_is_refused_and_its_host_named(tmp_path):
     RunFolder(folder).close()
 
 
-def test_a_lock_that_cannot_be_read_is_one_of_an_unknown_machine(tmp_path):
-    (tmp_path / LOCK_FILE).write_text("")
+def test_a_lock_that_cannot_be_read_is_one_of_an_unknown_machine_and_an_empty_one_is_none(tmp_path):
+    (tmp_path / LOCK_FILE).write_text("{")
     with pytest.raises(RunFolderError, match="unknown machine"):
         RunFolder(str(tmp_path))
+    (tmp_path / LOCK_FILE).write_text("")  # of a run that was killed as it began
+    assert under_way(str(tmp_path)) is None
+    RunFolder(str(tmp_path)).close()
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ import time
 from dataclasses import replace
 
 from analysis.printable import printable
-from analysis.report.status import counts, duration_text
-from analysis.report.status import line as run_line
+from analysis.runs.status import counts, duration_text
+from analysis.runs.status import line as run_line
 from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.batch import StudyFolder

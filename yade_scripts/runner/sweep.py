@@ -14,7 +14,7 @@ from numbers import Integral
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
-from analysis.report.status import duration_text
+from analysis.runs.status import duration_text
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
