@@ -8,6 +8,7 @@
 Python alone, no packages. Ends with status 1 where something differs or is incomplete. README.md describes the files.
 """
 
+import argparse
 import json
 import math
 import random
@@ -20,105 +21,101 @@ ROUNDING = 1e-9  # below it an error has no order
 SHUFFLES = 9999
 
 
-def refuse(what, must):
-    sys.exit(f"check.py: {what}: must be {must}")
-
-
 # ---- cases ----
 
 
 def require(results, suite):
-    """End with a line where results can't be compared with a suite."""
+    """Raise ValueError where results can't be compared with a suite."""
     if results.get("suite") != suite["version"]:
-        refuse(f"results are of version {results.get('suite')} of the suite", suite["version"])
+        raise ValueError(f"version {results.get('suite')} of the suite: must be {suite['version']}")
     questions = {case["id"]: [question["name"] for question in case["asked"]] for case in suite["cases"]}
+    if not results["cases"]:
+        raise ValueError("no case: must have one or more")
     for case, answer in results["cases"].items():
         if case not in questions:
-            refuse(case, f"one of {', '.join(questions)}")
+            raise ValueError(f"{case}: must be one of {', '.join(questions)}")
         if "not modelled" in answer:
             continue
         steps = answer["steps"]
-        if len(steps) < 2 or not all(a > b for a, b in zip([math.inf, *steps], [*steps, 0])):
-            refuse(f"{case}: steps {steps}", "two or more, the longest first")
+        if len(steps) < 2 or steps != sorted(set(steps), reverse=True) or steps[-1] <= 0:
+            raise ValueError(f"{case}: steps {steps}: must be two or more, the longest first")
         for question, values in answer["values"].items():
             if question not in questions[case]:
-                refuse(f"{case}: {question}", f"one of {', '.join(questions[case])}")
+                raise ValueError(f"{case}: {question}: must be one of {', '.join(questions[case])}")
             if values is not None and len(values) != len(steps):
-                refuse(f"{case}: {question}: {len(values)} values", f"{len(steps)}, one a step")
+                raise ValueError(f"{case}: {question}: {len(values)} values: must be {len(steps)}, one a step")
 
 
-def checked(question, steps, values, suite):
-    """{difference (relative), order (None: below rounding), word} of a question's values, the longest step first."""
+def compare_question(question, steps, values, suite):
+    """{word, difference (relative), order (None: below rounding)} of a question's values, the longest step first."""
     if values is None:
-        return dict(difference=None, order=None, word="not answered")
+        return dict(word="not answered", difference=None, order=None)
     exact = float(question["value"])
     scale = question.get("scale", abs(exact))
-    errors = [math.nan if v is None else (v - exact) / scale for v in values]
+    errors = [math.nan if value is None else (value - exact) / scale for value in values]
     if not all(map(math.isfinite, errors)):
-        return dict(difference=math.inf, order=None, word="does not occur")
+        return dict(word="does not occur", difference=math.inf, order=None)
     falls = (steps[-2] / steps[-1]) ** question.get("order", suite["order"])
-    limit = errors[-1] + (errors[-1] - errors[-2]) / (falls - 1)
+    limit = abs(errors[-1] + (errors[-1] - errors[-2]) / (falls - 1))
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
-    return dict(difference=abs(limit), order=order, word="agrees" if abs(limit) <= suite["tolerance"] else "differs")
+    return dict(word="agrees" if limit <= suite["tolerance"] else "differs", difference=limit, order=order)
 
 
-def verdict(case, answer, suite):
-    """{word, difference, order, worst} of a case: of its worst question; answered: how many of how many; questions.
+def compare_case(case, answer, suite):
+    """{word, why, questions: {name: compare_question()}, difference: the largest} of a case.
 
-    It agrees only where all is answered but what codes without a ledger can't.
+    It agrees only where all is answered but the channels of energy, which not every code has.
     """
     if answer is None:
-        return dict(word="not run")
+        return dict(word="not run", why="", questions={})
     if "not modelled" in answer:
-        return dict(word="not modelled", why=answer["not modelled"])
-    found = {q["name"]: checked(q, answer["steps"], answer["values"].get(q["name"]), suite) for q in case["asked"]}
-    known = {name: one for name, one in found.items() if one["difference"] is not None}
-    if not known:
-        return dict(word="incomplete", why="nothing is answered")
-    missing = any(q["measure"]["kind"] != "channel" for q in case["asked"] if q["name"] not in known)
-    wrong = any(one["word"] != "agrees" for one in known.values())
-    word = "differs" if wrong else "incomplete" if missing else "agrees"
-    worst = max(known, key=lambda name: known[name]["difference"])
-    orders = sorted(one["order"] for one in known.values() if one["order"] is not None)
-    order = orders[len(orders) // 2] if orders else None
-    of_worst = dict(difference=known[worst]["difference"], order=order, worst=worst)
-    return dict(word=word, answered=(len(known), len(found)), questions=found, **of_worst)
+        return dict(word="not modelled", why=answer["not modelled"], questions={})
+    found, words, missing = {}, set(), False
+    for question in case["asked"]:
+        name = question["name"]
+        found[name] = compare_question(question, answer["steps"], answer["values"].get(name), suite)
+        words.add(found[name]["word"])
+        missing |= found[name]["word"] == "not answered" and question["measure"]["kind"] != "channel"
+    answered = {name: one["difference"] for name, one in found.items() if one["word"] != "not answered"}
+    if not answered:
+        return dict(word="incomplete", why="nothing is answered", questions={})
+    worst = max(answered, key=answered.get)
+    word = "differs" if words & {"differs", "does not occur"} else "incomplete" if missing else "agrees"
+    of = "" if len(answered) == len(found) else f"{len(answered)} of {len(found)} answered; "
+    why = f"{of}{size(answered[worst], 1)}; worst: {worst}"
+    return dict(word=word, why=why, questions=found, difference=answered[worst])
 
 
-def verdicts(results):
-    """{case: verdict} of a results file."""
+def compare_cases(results):
+    """{case: compare_case()} of a results file."""
     suite = json.loads((HERE / "cases.json").read_text())
     require(results, suite)
-    return {case["id"]: verdict(case, results["cases"].get(case["id"]), suite) for case in suite["cases"]}
+    return {case["id"]: compare_case(case, results["cases"].get(case["id"]), suite) for case in suite["cases"]}
 
 
-def in_words(found):
-    if "difference" not in found:
-        return found["word"] + (f": {found['why']}" if "why" in found else "")
-    order = "" if found["order"] is None else f", order {found['order']:.1f}"
-    by = "something does not occur" if math.isinf(found["difference"]) else f"{found['difference']:.1e}"
-    some = "" if found["answered"][0] == found["answered"][1] else "{} of {} answered; ".format(*found["answered"])
-    return f"{found['word']} ({some}{by}{order}; worst: {found['worst']})"
+def size(difference, digits=0):
+    return f"{difference:.{digits}e}" if math.isfinite(difference) else "does not occur"
 
 
-def in_lines(found, long):
-    for name, one in found.items():
-        yield f"{name:18}{in_words(one)}"
-        for question, its in one.get("questions", {}).items() if long else ():
-            by = "" if its["difference"] is None else f" {its['difference']:.1e}"
-            order = "" if its["order"] is None else f", order {its['order']:.2f}"
-            yield f"    {its['word']:16}{question}{by}{order}"
+def print_cases(cases, long):
+    for name, case in cases.items():
+        print(f"{name:18}{case['word']}" + (f" ({case['why']})" if case["why"] else ""))
+        for question, one in case["questions"].items() if long else ():
+            difference = "" if one["difference"] is None else f" {one['difference']:.1e}"
+            order = "" if one["order"] is None else f", order {one['order']:.2f}"
+            print(f"    {one['word']:16}{question}{difference}{order}")
 
 
-def in_a_table(found):
-    """Lines of Markdown, case against code: agrees, or by how much it differs. found: {code: {case: verdict}}"""
-    size = lambda x: f"{x:.0e}" if math.isfinite(x) else "does not occur"
-    cell = lambda one: size(one["difference"]) if one["word"] == "differs" else one["word"]
-    rows = [["case", *found], ["---"] * (1 + len(found))]
-    rows += [[case, *(cell(its[case]) for its in found.values())] for case in next(iter(found.values()))]
-    return ["| " + " | ".join(row) + " |" for row in rows]
+def print_table(of_codes):
+    """Print Markdown, case against code: agrees, or by how much it differs. of_codes: {code: {case: verdict}}"""
+    print("| " + " | ".join(["case", *of_codes]) + " |")
+    print("| " + " | ".join(["---"] * (1 + len(of_codes))) + " |")
+    for name in next(iter(of_codes.values())):
+        row = [cases[name] for cases in of_codes.values()]
+        cells = [size(case["difference"]) if case["word"] == "differs" else case["word"] for case in row]
+        print("| " + " | ".join([name, *cells]) + " |")
 
 
 # ---- aggregates ----
@@ -144,59 +141,56 @@ def p_value(sample, reference):
     return (as_far + 1) / (SHUFFLES + 1)
 
 
-def compared(results):
-    """{distribution: {word, p, mean, reference}} of a file of samples."""
+def compare_samples(results):
+    """{distribution: {word, why}} of a file of samples."""
     suite = json.loads((HERE / "ensembles.json").read_text())
     if results.get("suite") != suite["version"]:
-        refuse(f"samples are of version {results.get('suite')}", suite["version"])
-    given, found = {d["id"]: d["values"] for d in suite["distributions"]}, {}
+        raise ValueError(f"version {results.get('suite')} of the suite: must be {suite['version']}")
+    references, found = {d["id"]: d["values"] for d in suite["distributions"]}, {}
+    level = suite["level"] / len(references)
     for name, values in results["samples"].items():
-        if name not in given:
-            refuse(name, f"one of {', '.join(given)}")
-        level = suite["level"] / len(given)
-        least = next(n for n in range(2, 1000) if 1 / math.comb(n + len(given[name]), n) < level)
+        if name not in references:
+            raise ValueError(f"{name}: must be one of {', '.join(references)}")
+        reference = references[name]
+        least = next(n for n in range(2, 1000) if 1 / math.comb(n + len(reference), n) < level)
         if len(values) < least or not all(map(math.isfinite, values)):
-            refuse(f"{name}: {len(values)} runs", f"{least} or more, which can differ, all finite numbers")
-        p = p_value(values, given[name])
-        found[name] = dict(word="differs" if p < level else "not told apart", p=p, of=values, reference=given[name])
+            raise ValueError(f"{name}: {len(values)} runs: must be {least} or more, all finite numbers")
+        p = p_value(values, reference)
+        why = f"p {p:.4f}; mean {mean_and_error(values)}, reference {mean_and_error(reference)}"
+        found[name] = dict(word="differs" if p < level else "not told apart", why=why, questions={})
     return found
 
 
-def of_mean(values):
+def mean_and_error(values):
     return f"{mean(values):.4g} ± {stdev(values) / len(values) ** 0.5:.2g}"
 
 
-def read(path):
-    """{case or distribution: verdict} of a file, and whether it is of cases."""
-    try:
-        results = json.loads(Path(path).read_text())
-        found = compared(results) if "samples" in results else verdicts(results)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        sys.exit(f"check.py: {path}: {error!r}: must be a results file (README.md)")
-    if all(one["word"] == "not run" for one in found.values()):
-        sys.exit(f"check.py: {path}: no case of these; must have one or more")
-    return found, "samples" not in results
+# ---- files ----
 
 
-def main(*arguments):
-    long, of_cases, every = "--long" in arguments, {}, []
-    for path in (argument for argument in arguments if argument != "--long"):
-        found, cases = read(path)
-        every += [one["word"] for one in found.values()]
-        if cases:
-            of_cases[Path(path).stem] = found
-            continue
-        for name, one in found.items():
-            means = f"mean {of_mean(one['of'])}, reference {of_mean(one['reference'])}"
-            print(f"{name:22}{one['word']} (p {one['p']:.4f}; {means})")
-    if len(of_cases) > 1:
-        lines = in_a_table(of_cases)
-    else:
-        lines = [line for found in of_cases.values() for line in in_lines(found, long)]
-    for line in lines:
-        print(line)
-    return 1 if {"differs", "incomplete"} & {*every} else 0
+def main(*words):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", nargs="+", type=Path)
+    parser.add_argument("--long", action="store_true", help="a line a question")
+    given = parser.parse_args(words)
+    of_codes, words = {}, set()
+    for path in given.results:
+        try:
+            results = json.loads(path.read_text())
+            found = compare_samples(results) if "samples" in results else compare_cases(results)
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+            sys.exit(f"check.py: {path}: must be a results file (README.md): {error!r}")
+        words |= {one["word"] for one in found.values()}
+        if "samples" in results:
+            print_cases(found, given.long)
+        else:
+            of_codes[path.stem] = found
+    if len(of_codes) > 1:
+        print_table(of_codes)
+    for cases in of_codes.values() if len(of_codes) == 1 else ():
+        print_cases(cases, given.long)
+    return 1 if words & {"differs", "incomplete"} else 0
 
 
 if __name__ == "__main__":
-    sys.exit(print(__doc__) if "--help" in sys.argv else main(*sys.argv[1:]) if len(sys.argv) > 1 else __doc__)
+    sys.exit(main(*sys.argv[1:]))

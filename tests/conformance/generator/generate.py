@@ -9,26 +9,27 @@ import re
 import sys
 from pathlib import Path
 
-import bond_cases
-import normal_cases
-import tangential_cases
+import bond_cases as bond
+import normal_cases as normal
+import tangential_cases as tangential
 from law import MATERIALS
 
 FILE = Path(__file__).resolve().parents[1] / "cases.json"
 HEAD = dict(suite="JKR-Wada conformance: two grains", version="1.1.0", licence="CC0-1.0", units="SI")
 HEAD.update(tolerance=1e-6, order=2)
-CASES = {
-    normal_cases: "equilibrium hysteresis collision sticking oscillation linear-drag viscous-drag",
-    tangential_cases: "sliding rolling twisting two-at-once under-load turning-slip unlike-radii unlike-materials",
-    bond_cases: "bond-tension bond-shear bond-bending bond-torsion bond-break",
-}
-LAST = ((normal_cases, "plane"), (tangential_cases, "free-rotation"))
+CASES = [
+    *(normal.equilibrium, normal.hysteresis, normal.collision, normal.sticking, normal.oscillation),
+    *(normal.linear_drag, normal.viscous_drag),
+    *(tangential.sliding, tangential.rolling, tangential.twisting, tangential.two_at_once, tangential.under_load),
+    *(tangential.turning_slip, tangential.unlike_radii, tangential.unlike_materials),
+    *(bond.bond_tension, bond.bond_shear, bond.bond_bending, bond.bond_torsion, bond.bond_break),
+    *(normal.plane, tangential.free_rotation),
+]
 
 
 def cases(names=()):
     """Those of these names, or all, as they stand in the file."""
-    every = [(module, name) for module, words in CASES.items() for name in words.split()] + list(LAST)
-    return [getattr(module, name.replace("-", "_"))() for module, name in every if not names or name in names]
+    return [made() for made in CASES if not names or made.__name__.replace("_", "-") in names]
 
 
 if __name__ == "__main__":

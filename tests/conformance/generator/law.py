@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 from mpmath import asin, cos, inf, mp, mpf, pi, sin, sqrt  # noqa: F401
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
@@ -88,74 +89,66 @@ def energy(c, u):
     return c.Fc * c.dc * 4 * mpf(6) ** (mpf(1) / 3) * terms  # A22 (8)
 
 
-# ---- springs; vectors are lists of three; n: unit vector from grain 2 to grain 1 ----
+# ---- springs; vectors are arrays (3,) of mpmath's numbers; n: unit vector from grain 2 to grain 1 ----
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
+def vector(*numbers):
+    """Of mpf, and of the decimal numbers that stand in the file."""
+    return np.array([exact(x) if isinstance(x, float) else mpf(x) for x in numbers], dtype=object)
 
 
 def size(a):
-    return sqrt(dot(a, a))
+    return sqrt(a @ a)
 
 
-def combined(*terms):
-    """Sum of factor times vector."""
-    return [sum(factor * vector[k] for factor, vector in terms) for k in range(3)]
-
-
-def turned(vector, angle):
+def turned(a, angle):
     """A vector turned by a vector of an angle (Rodrigues)."""
     if size(angle) == 0:
-        return vector
-    axis = [x / size(angle) for x in angle]
-    across = cross(axis, vector)
-    return combined((1, vector), (sin(size(angle)), across), (1 - cos(size(angle)), cross(axis, across)))
+        return a
+    axis = angle / size(angle)
+    across = np.cross(axis, a)
+    return a + sin(size(angle)) * across + (1 - cos(size(angle))) * np.cross(axis, across)
 
 
 def displacements(c, n, n1, n2):
     """zeta and xi of contact pointers n1, n2, and the lever z: A24 (A1), (A2)."""
-    zeta0 = combined((c.r1, n1), (-c.r2, n2))
-    z = dot(zeta0, n)
-    return combined((1, zeta0), (-z, n)), combined((c.R, n1), (c.R, n2)), z
+    zeta0 = c.r1 * n1 - c.r2 * n2
+    z = zeta0 @ n
+    return zeta0 - z * n, c.R * (n1 + n2), z
 
 
 def springs(c, n, distance, n1, n2, phi):
     """Force on grain 1 and torques on both grains: A24 (A5) to (A8)."""
     zeta, xi, z = displacements(c, n, n1, n2)
-    torque1 = combined((-c.r1 * c.ks, cross(n1, zeta)), (-c.R * c.kr, cross(n1, xi)), (-c.kt * phi, n))
-    torque2 = combined((c.r2 * c.ks, cross(n2, zeta)), (-c.R * c.kr, cross(n2, xi)), (c.kt * phi, n))
-    return [c.ks * z / distance * x for x in zeta], torque1, torque2
+    torque1 = -c.r1 * c.ks * np.cross(n1, zeta) - c.R * c.kr * np.cross(n1, xi) - c.kt * phi * n
+    torque2 = c.r2 * c.ks * np.cross(n2, zeta) - c.R * c.kr * np.cross(n2, xi) + c.kt * phi * n
+    return c.ks * z / distance * zeta, torque1, torque2
 
 
-# ---- ordinary differential equations ----
+# ---- ordinary differential equations (mpmath's own odefun takes forty times as long) ----
 
 
 def integrate(rate, start, end, y, steps, columns=14):
-    """y (list) at `end` of y' = rate(t, y), from `start`, by equal steps: midpoint rules of 2, 4, 6 ... parts in each,
+    """y (array) at `end` of y' = rate(t, y), from `start`, by equal steps: midpoint rules of 2, 4, 6 ... parts in each,
     extrapolated (Gragg, Bulirsch & Stoer)."""
-    h = (end - start) / steps
+    h, y = (end - start) / steps, np.array(y, dtype=object)
     for step in range(steps):
         rows = []
         for k in range(columns):
             rows.append([midpoint(rate, start + step * h, y, h, 2 * (k + 1))])
             for j in range(k):
                 factor = (mpf(k + 1) / (k - j)) ** 2 - 1
-                rows[k].append([a + (a - b) / factor for a, b in zip(rows[k][j], rows[k - 1][j])])
+                rows[k].append(rows[k][j] + (rows[k][j] - rows[k - 1][j]) / factor)
         y = rows[-1][-1]
     return y
 
 
 def midpoint(rate, t, y, step, parts):
     h = step / parts
-    before, now = y, [a + h * b for a, b in zip(y, rate(t, y))]
+    before, now = y, y + h * rate(t, y)
     for k in range(1, parts):
-        before, now = now, [a + 2 * h * b for a, b in zip(before, rate(t + k * h, now))]
-    return [(a + b + h * c) / 2 for a, b, c in zip(before, now, rate(t + step, now))]
+        before, now = now, before + 2 * h * rate(t + k * h, now)
+    return (before + now + h * rate(t + step, now)) / 2
 
 
 # ---- scenes and questions as they stand in the file ----
@@ -166,8 +159,7 @@ DIGITS = 12  # of a reference value
 
 def grain(material, radius, x=0.0, velocity=REST, spin=REST):
     """A grain on the x axis."""
-    place = dict(material=material, radius=radius, position=[rounded(x), 0.0, 0.0])
-    return {**place, "velocity": list(velocity), "spin": list(spin)}
+    return dict(material=material, radius=radius, position=along_x(x), velocity=list(velocity), spin=list(spin))
 
 
 def pair(c, delta, materials=("ice", "ice"), velocity2=REST, **more):
@@ -206,12 +198,12 @@ def when(of, passes, value=0.0, after=0.0, before=None, scene="scene"):
     return dict(scene=scene, kind="value", of=of, when=passes, equals=rounded(value), after=after, before=before)
 
 
-def channel(of, time, scene="scene"):
-    return dict(scene=scene, kind="channel", of=of, at=time)
+def channel(of, time):
+    return dict(scene="scene", kind="channel", of=of, at=time)
 
 
-def flight(distance, scene="scene"):
-    return dict(scene=scene, kind="break", distance=rounded(distance))
+def flight(distance):
+    return dict(scene="scene", kind="break", distance=rounded(distance))
 
 
 def case(name, title, mechanisms, scenes, questions):

@@ -151,7 +151,7 @@ def damped_rate(c):
 
     def rate(_, y):
         u, v = y
-        return [v / (c.d0 * (12 * u**3 - 2)), -(force(c, u) + (c.viscous * c.a0 * u**2 + c.drag) * v) / c.m]
+        return vector(v / (c.d0 * (12 * u**3 - 2)), -(force(c, u) + (c.viscous * c.a0 * u**2 + c.drag) * v) / c.m)
 
     return rate
 
@@ -179,11 +179,11 @@ def viscous_drag():
 
     def by_speed(v, y):  # t and u, while the deceleration is above zero
         du, dv = by_time(None, [y[1], v])
-        return [1 / dv, du / dv]
+        return vector(1 / dv, du / dv)
 
     def by_root(u, y):  # t and v, smooth up to the break
         du, dv = by_time(None, [u, y[1]])
-        return [1 / du, dv / du]
+        return vector(1 / du, dv / du)
 
     u, v = integrate(by_time, birth, exact(2e-10), [U_BIRTH, v0], 40)  # by time while the force pulls
     turn, top = integrate(by_speed, v, mpf(0), [exact(2e-10), u], 16)

@@ -4,8 +4,8 @@
 from law import *
 from normal_cases import pulled
 
-TWO, KINDS = contact(), ("ice", "ice")
-X, AWAY, AXES = [mpf(1), mpf(0), mpf(0)], [mpf(-1), mpf(0), mpf(0)], "xyz"
+TWO = contact()
+X, AXES = vector(1, 0, 0), "xyz"
 QUARTER, STEPS = 2e-9, [500, 1000, 2000]  # of a cycle of prescribed spins
 POINTERS = "contact pointers turned with the grains: A24 (A1) to (A8)"
 WORK = "2 (limit force) (slip each way)"
@@ -23,31 +23,30 @@ def turning_rate(angle):
 # ---- closed cycles of one mode: a scene and its questions ----
 
 
-def cycle(name, made, scene, law, before, limit, work, **spins):
-    """Prescribe a closed cycle, and ask for components before and at the limit, and for its work.
+def cycle(name, c, law, before, limit, work, spins, delta=None, scene="scene", materials=("ice", "ice")):
+    """A closed cycle, prescribed, and questions for components before and at the limit, and for its work.
 
-    spins: of the first quarter; law: (formula, source); before, limit: {component: value}.
+    law: (formula, source); before, limit: {component: value}; spins: of the first quarter; delta: overlap, None: that
+    of equilibrium.
     """
-    formula, source = law
-    sign = lambda s: {k: [s * x for x in v] for k, v in spins.items()}
+    made = pair(c, delta or c.d0, materials, duration=5 * QUARTER, steps=STEPS)
     ends = ((1, 1.0), (3, -1.0), (5, 1.0))  # forwards a quarter, backwards two, forwards two
-    made["prescribed"] = [segment(rounded(k * exact(QUARTER), 6), **sign(s)) for k, s in ends]
+    made["prescribed"] = [
+        segment(rounded(k * exact(QUARTER), 6), **{grain: [sign * x for x in spin] for grain, spin in spins.items()})
+        for k, sign in ends
+    ]
+    formula, source = law
+    held = f"{formula}; held at the limit", f"{source}; W07"
     early, questions = rounded(exact(QUARTER) / 20, 6), []
-    for words, values, time in (("before the limit", before, early), ("at the limit", limit, QUARTER)):
-        origin = law if values is before else (f"{formula}; held at the limit", f"{source}; W07")
+    for words, values, time, its_law in (("before", before, early, law), ("at", limit, QUARTER, held)):
         for of, value in values.items():
-            questions.append(asked(f"{of} of {name} {words}", at(time, of, scene), value, unit(of), *origin))
+            questions.append(asked(f"{of} of {name} {words} the limit", at(time, of, scene), value, unit(of), *its_law))
     spent = dict(scene=scene, kind="work", after=QUARTER, before=5 * QUARTER)
     questions.append(asked(f"work of a closed cycle of {name}", spent, work, "J", WORK, f"{source}; W07"))
     return made, questions
 
 
-def start(c, materials, delta):
-    """Scene of a cycle at an overlap, None: that of equilibrium."""
-    return pair(c, delta or c.d0, materials, duration=5 * QUARTER, steps=STEPS)
-
-
-def slid(c, materials=KINDS, scene="scene", delta=None):
+def slid(c, delta=None, **where):
     total, distance = c.r1 + c.r2, c.r1 + c.r2 - (delta or c.d0)
     rate = turning_rate(6 * c.slide / total)
     end, small, least = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20, asin(c.slide / total)
@@ -59,29 +58,29 @@ def slid(c, materials=KINDS, scene="scene", delta=None):
         "F = k_s z zeta/d, z = (r1 + r2) cos theta, zeta = (r1 + r2) sin theta, M1 = r1 k_s zeta cos theta, "
         "limit zeta_crit = (G'/G*) a0/(16 pi), (2 - nu) a0/(16 pi) for like materials"
     )
-    law, spin = (formula, "A22 (18), (19); A24 (A1), (A5), (A8)"), [0.0, 0.0, rate]
-    made = start(c, materials, delta)
-    return cycle("sliding", made, scene, law, before, limit, work, spin1=spin, spin2=spin)
+    law, spins = (formula, "A22 (18), (19); A24 (A1), (A5), (A8)"), dict(spin1=[0.0, 0.0, rate], spin2=[0.0, 0.0, rate])
+    return cycle("sliding", c, law, before, limit, work, spins, delta, **where)
 
 
-def rolled(c, materials=KINDS, scene="scene", delta=None):
+def rolled(c, delta=None, **where):
     rate = turning_rate(6 * c.roll / (2 * c.R))
     end, small, least = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20, asin(c.roll / (2 * c.R))
     value = lambda theta: {"torque1.z": -c.R * c.kr * 2 * c.R * sin(theta) * cos(theta)}
     work = 2 * c.kr * c.roll * 2 * c.R * cos(least) * (2 * end - 2 * least)
     formula = "M = R k_r xi cos theta, xi = 2 R sin theta, k_r = 4 F_c/R, limit xi_crit"
     law, spins = (formula, "A22 (14); A24 (A2), (A6)"), dict(spin1=[0.0, 0.0, rate], spin2=[0.0, 0.0, -rate])
-    made = start(c, materials, delta)
-    return cycle("rolling", made, scene, law, value(small), value(least), work, **spins)
+    return cycle("rolling", c, law, value(small), value(least), work, spins, delta, **where)
 
 
-def twisted(c, materials=KINDS, scene="scene", delta=None):
+def twisted(c, delta=None, **where):
     rate = turning_rate(6 * c.twist)
     end, small = exact(rate) * exact(QUARTER), exact(rate) * exact(QUARTER) / 20
     value, work = lambda phi: {"torque1.x": -c.kt * phi}, 2 * c.kt * c.twist * (2 * end - 2 * c.twist)
     law = "M = k_t phi, k_t = (16/3) G' a0^3, limit phi_crit = 1/(16 pi)", "A22 (23), (24); A24 (A4), (A7)"
-    made = start(c, materials, delta)
-    return cycle("twisting", made, scene, law, value(small), value(c.twist), work, spin1=[rate, 0.0, 0.0])
+    return cycle("twisting", c, law, value(small), value(c.twist), work, dict(spin1=[rate, 0.0, 0.0]), delta, **where)
+
+
+MODES = {"slid": slid, "rolled": rolled, "twisted": twisted}
 
 
 def alone(name, scene_of, title):
@@ -113,16 +112,14 @@ def all_modes(name, title, made, added):
 def under_load():
     title = "Sliding, rolling and twisting of grains pressed to three times the equilibrium overlap: "
     title += "stiffnesses and limits do not follow the load"
-    modes = (("slid", slid), ("rolled", rolled), ("twisted", twisted))
-    made = {name: scene_of(TWO, scene=name, delta=3 * TWO.d0) for name, scene_of in modes}
+    made = {name: mode(TWO, 3 * TWO.d0, scene=name) for name, mode in MODES.items()}
     return all_modes("under-load", title, made, "; the same at every overlap but for d")
 
 
 def unlike_materials():
-    kinds = ("ice", "soft")
-    c, modes = contact(name2="soft"), (("slid", slid), ("rolled", rolled), ("twisted", twisted))
+    c, kinds = contact(name2="soft"), ("ice", "soft")
     made = {"pulled": pulled(c, 0.257660692708395, kinds, scene="pulled")}
-    made |= {name: scene_of(c, kinds, scene=name) for name, scene_of in modes}
+    made |= {name: mode(c, scene=name, materials=kinds) for name, mode in MODES.items()}
     added = "; 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G, 1/G' = sum 1/G; gamma geometric, xi_crit arithmetic mean"
     return all_modes("unlike-materials", "Grains of two materials: every constant of the contact", made, added)
 
@@ -132,7 +129,7 @@ def unlike_materials():
 
 def all_components(c, n1, n2, phi, name, time, scene, law, axes=AXES):
     """Questions for every component of force and torques at a time, grains held at the equilibrium overlap."""
-    force1, torque1, torque2 = springs(c, AWAY, c.r1 + c.r2 - c.d0, n1, n2, phi)
+    force1, torque1, torque2 = springs(c, -X, c.r1 + c.r2 - c.d0, n1, n2, phi)
     found = []
     for of, vector in (("force1", force1), ("torque1", torque1), ("torque2", torque2)):
         for axis, value in zip(AXES, vector):
@@ -165,8 +162,8 @@ def turned_slip(c, scene, limit, length, same):
     law, questions = (POINTERS + HELD + ("(r1 + r2)" if same else "(2 R)"), "A24; W07"), []
     for name, time in (("as its way turns", MIDWAY), ("after the turn", END)):
         beta = way - 2 * mp.atan(mp.tan(way / 2) * mp.exp(-decay * (exact(time) - exact(TURN))))
-        n1 = [cos(theta), sin(theta) * cos(beta), sin(theta) * sin(beta)]
-        n2 = [-n1[0], *(-sign * x for x in n1[1:])]
+        n1 = vector(cos(theta), sin(theta) * cos(beta), sin(theta) * sin(beta))
+        n2 = -vector(1, sign, sign) * n1
         questions += all_components(c, n1, n2, 0, f"of {scene} {name}", time, scene, law, "yz")
     for question in questions:
         if question["measure"]["at"] == MIDWAY:
@@ -185,13 +182,13 @@ def both_ways(c, scene, moved="W07"):
     """Grain 1 turned alone: within the limits, and until sliding and rolling are both at theirs."""
     made, rate = pair(c, c.d0, duration=QUARTER, steps=STEPS), turning_rate(40 * c.slide / c.r1)
     made["prescribed"], early = [segment(QUARTER, spin1=[0.0, 0.0, rate])], rounded(exact(QUARTER) / 100, 6)
-    n1 = turned(X, [mpf(0), mpf(0), exact(rate) * exact(early)])
-    questions = all_components(c, n1, AWAY, 0, "within the limits", early, scene, (POINTERS, "A24"), "yz")
+    n1 = turned(X, vector(0, 0, exact(rate) * exact(early)))
+    questions = all_components(c, n1, -X, 0, "within the limits", early, scene, (POINTERS, "A24"), "yz")
     # angles about z by which the pointers are turned at both limits
     apart = 2 * asin(c.roll / (2 * c.R))
     excess = lambda angle: (c.r1 * sin(angle) + c.r2 * sin(angle - apart) - c.slide) / c.slide
     angle = mp.findroot(excess, apart / 2)
-    n1, n2 = (turned(v, [mpf(0), mpf(0), by]) for v, by in ((X, angle), (AWAY, angle - apart)))
+    n1, n2 = turned(X, vector(0, 0, angle)), turned(-X, vector(0, 0, angle - apart))
     law = POINTERS + "; |zeta| = zeta_crit and |xi| = xi_crit", f"A24; {moved}"
     questions += all_components(c, n1, n2, 0, "at both limits", QUARTER, scene, law, "yz")
     return made, [q for q in questions if float(q["value"])]
@@ -203,9 +200,9 @@ def two_at_once():
     spins = [[turning_rate(k * c.slide / c.r1) for k in parts] for parts in ((9.0, 4.0, 6.0), (-7.0, 3.0, -2.0))]
     space = pair(c, c.d0, duration=QUARTER, steps=STEPS)
     space["prescribed"], early = [segment(QUARTER, spin1=spins[0], spin2=spins[1])], rounded(exact(QUARTER) / 20, 6)
-    angles = [[exact(w) * exact(early) for w in spin] for spin in spins]
-    n1, n2, phi = turned(X, angles[0]), turned(AWAY, angles[1]), angles[1][0] - angles[0][0]
-    check_limits(c, AWAY, n1, n2, phi)
+    angles = [vector(*spin) * exact(early) for spin in spins]
+    n1, n2, phi = turned(X, angles[0]), turned(-X, angles[1]), angles[1][0] - angles[0][0]
+    check_limits(c, -X, n1, n2, phi)
     name, law = "of all three within the limits", (POINTERS, "A24")
     questions += all_components(c, n1, n2, phi, name, early, "space", law)
     title = "Two and three at once: sliding and rolling held at both limits; all three springs within theirs"
@@ -233,14 +230,13 @@ def free_rate(c):
     inertia = mpf(2) / 5 * c.m1 * c.r1**2
 
     def rate(_, y):
-        x, v, w1, w2, n1, n2, phi = y[0:3], y[3:6], y[6:9], y[9:12], y[12:15], y[15:18], y[18]
-        n = [k / size(x) for k in x]
+        (x, v, w1, w2, n1, n2), phi = y[:18].reshape(6, 3), y[18]
+        n = x / size(x)
         tangential, torque1, torque2 = springs(c, n, size(x), n1, n2, phi)
         push = force(c, radius_root(c, c.r1 + c.r2 - size(x)))
-        acceleration = [(push * a + b) / c.m for a, b in zip(n, tangential)]
-        turns = [[t / inertia for t in torque] for torque in (torque1, torque2)]
-        spin = dot(combined((1, w1), (-1, w2)), n)
-        return [*v, *acceleration, *turns[0], *turns[1], *cross(w1, n1), *cross(w2, n2), spin]
+        acceleration = (push * n + tangential) / c.m
+        turning = torque1 / inertia, torque2 / inertia, np.cross(w1, n1), np.cross(w2, n2)
+        return np.concatenate([v, acceleration, *turning, [(w1 - w2) @ n]])
 
     return rate
 
@@ -250,26 +246,27 @@ def free_rotation():
     first = grain("ice", 1e-7, 0, [0.0, -speed, 1.0], spins[0])
     second = grain("ice", 1e-7, c.r1 + c.r2 - c.d0, [0.0, speed, -1.0], spins[1])
     made = dict(grains=[first, second], contact=constants(c), duration=end, steps=[4000, 8000, 16000])
-    x, v = [-exact(second["position"][0]), mpf(0), mpf(0)], [mpf(0), -2 * exact(speed), mpf(2)]
-    w1, w2 = ([exact(w) for w in spin] for spin in spins)
-    y, step = [*x, *v, *w1, *w2, *X, *AWAY, mpf(0)], exact(end) / 40
+    x, v, w1, w2 = -vector(*second["position"]), -2 * vector(*second["velocity"]), *(vector(*spin) for spin in spins)
+    y, step = np.concatenate([x, v, w1, w2, X, -X, [mpf(0)]]), exact(end) / 40
     for k in range(40):
         y = integrate(free_rate(c), k * step, (k + 1) * step, y, 1, columns=9)
-        check_limits(c, [a / size(y[:3]) for a in y[:3]], y[12:15], y[15:18], y[18])
-    law = (
-        "F = F_n n_c + F_s, torques: springs of pointers that turn with the grains; integrated",
-        "A22 (5); A24 (A1) to (A8)",
-    )
-    half, questions = -mpf(1) / 2, []
-    moved = (("position2", y[0:3], "m", half), ("velocity2", y[3:6], "m/s", half))
-    for of, vector, unit_, factor in (*moved, ("spin1", y[6:9], "rad/s", 1), ("spin2", y[9:12], "rad/s", 1)):
-        middle = x if of == "position2" else [mpf(0)] * 3  # the centre of mass rests at half of the first distance
-        for k, axis in enumerate(AXES):
-            what, value = at(end, f"{of}.{axis}"), factor * vector[k] - middle[k] / 2
-            questions.append(asked(f"{of}.{axis} at the end", what, value, unit_, *law, size(vector) * abs(factor)))
-    momentum = combined((mpf(2) / 5 * c.m1 * c.r1**2, combined((1, w1), (1, w2))), (c.m, cross(x, v)))
+        check_limits(c, y[0:3] / size(y[0:3]), y[12:15], y[15:18], y[18])
+    law = "F = F_n n_c + F_s, torques: springs of pointers that turn with the grains; integrated"
+    law, questions = (law, "A22 (5); A24 (A1) to (A8)"), []
+    position2, velocity2 = -(y[0:3] + x) / 2, -y[3:6] / 2  # the centre of mass rests at half of the first distance
+    scales = {
+        "position2": size(y[0:3]) / 2,
+        "velocity2": size(velocity2),
+        "spin1": size(y[6:9]),
+        "spin2": size(y[9:12]),
+    }
+    ends = (("m", position2), ("m/s", velocity2), ("rad/s", y[6:9]), ("rad/s", y[9:12]))
+    for (of, scale), (unit_, values) in zip(scales.items(), ends):
+        for axis, value in zip(AXES, values):
+            questions.append(asked(f"{of}.{axis} at the end", at(end, f"{of}.{axis}"), value, unit_, *law, scale))
+    momentum = mpf(2) / 5 * c.m1 * c.r1**2 * (w1 + w2) + c.m * np.cross(x, v)
     law = "conserved: sum of m x v + I w about the centre of mass", "A24 (A5) to (A8)", size(momentum)
-    for value, axis in zip(momentum, AXES):
+    for axis, value in zip(AXES, momentum):
         what = at(end, f"angular_momentum.{axis}")
         questions.append(asked(f"angular momentum {axis}", what, value, "kg m2/s", *law))
     law = "conserved: springs within their limits", "A22 (8), A24", c.Fc * c.dc
