@@ -17,7 +17,6 @@ from ..printable import FAILED, complain
 from ..runs.table import TableError
 from ..theory import GRAIN_RADIUS, ICE
 from ..version import version
-from . import NO_SKLEARN
 from .columns import read_runs
 from .outcome_table import (
     COLUMNS,
@@ -123,7 +122,9 @@ def outcome_grid(model, structure, averaged, version):
     Outside of the data a node has the values of the nearest one inside. ValueError where no node is inside.
     """
     axes, columns = outcome_axes(structure, averaged), COLUMNS if averaged else (*COLUMNS, *INTERVALS)
-    points, region = _nodes(axes), Region(model.runs)
+    mesh = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")  # the last axis is the fastest
+    points = pandas.DataFrame({"impact_square": 0.5} | {a.name: values.ravel() for a, values in zip(axes, mesh)})
+    region = Region(model.runs)
     inside = region.beyond(points) <= MARGIN
     if not inside.any():
         raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
@@ -134,8 +135,8 @@ def outcome_grid(model, structure, averaged, version):
     found[TOUCHING] = model.touching(own, averaged)
     if not averaged:
         found = found.join(model.remains.intervals(own)[list(INTERVALS)])
-    rows = np.cumsum(inside) - 1
-    rows[~inside] = _nearest(axes, points[~inside], own)
+    rows, place = np.cumsum(inside) - 1, np.column_stack([axis.position(points[axis.name]) for axis in axes])
+    rows[~inside] = cKDTree(place[inside]).query(place[~inside])[1]  # the nearest in steps of the grid
     grid = found.iloc[rows].reset_index(drop=True)
     # Runs of a smaller mass ratio, which count here too, may lose more over their projectile than an eroded one has.
     grid["loss_erosion"] = np.minimum(grid.loss_erosion, (1 - KEPT) / points.mass_ratio)
@@ -157,18 +158,6 @@ def outcome_grid(model, structure, averaged, version):
     return OutcomeTable(axes, columns, values, tuple(about.splitlines()))
 
 
-def _nodes(axes):
-    """Points of all nodes, the last axis fastest."""
-    mesh = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")
-    return pandas.DataFrame({"impact_square": 0.5} | {a.name: values.ravel() for a, values in zip(axes, mesh)})
-
-
-def _nearest(axes, points, others):
-    """Row (n,) of the nearest of others, in steps of the grid."""
-    place = lambda own: np.column_stack([axis.position(own[axis.name]) for axis in axes])
-    return cKDTree(place(others)).query(place(points))[1]
-
-
 def main(folder=FOLDER):
     """Exit status: 0, or 2 with one line on stderr."""
     try:
@@ -184,7 +173,7 @@ def main(folder=FOLDER):
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
     except ModuleNotFoundError:
-        print(NO_SKLEARN, file=sys.stderr)
+        complain("scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])")
     except (TableError, ValueError) as error:
         complain(error)
     else:

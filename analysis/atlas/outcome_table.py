@@ -6,9 +6,9 @@ table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticki
 """
 
 from dataclasses import dataclass, replace
-from itertools import product
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
 
 from ..printable import suggested
 from ..runs.files import write_file
@@ -24,7 +24,6 @@ COLUMNS = (*PROBABILITIES, *ERRORS, TOUCHING, *LEFT, *OF_KIND, INSIDE, "runs")
 SCALES = {"log10": np.log10, "linear": np.asarray}
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
-CHUNK = 20_000  # queries at once: what they need stays in the processor's cache
 _SUM = '# {"sha256"'  # how files of versions 0.5 to 0.6 begin
 
 
@@ -93,30 +92,13 @@ class OutcomeTable:
         if unknown := [name for name in wanted if name not in self.columns]:
             raise ValueError(f"table of outcomes: no column {unknown[0]}{suggested(unknown[0], self.columns)}")
         given = np.broadcast_arrays(*(np.asarray(query[name], dtype=float) for name in names))
-        found = self._interpolated(
-            [axis.position(value).ravel() for axis, value in zip(self.axes, given)],
-            self.values[..., [self.columns.index(name) for name in wanted]],
-        )
-        beyond = np.any([axis.beyond(value) != 0 for axis, value in zip(self.axes, given)], axis=0)
-        inside = found[:, wanted.index(INSIDE)]
-        inside[beyond.ravel()] = 0.0
+        places = np.stack([axis.position(value) for axis, value in zip(self.axes, given)], axis=-1)
+        values = self.values[..., [self.columns.index(name) for name in wanted]]
+        found = RegularGridInterpolator([np.arange(n) for n in values.shape[:-1]], values)(places)
+        inside = found[..., wanted.index(INSIDE)]
+        inside[np.any([axis.beyond(value) != 0 for axis, value in zip(self.axes, given)], axis=0)] = 0.0
         inside[inside > 1.0 - ROUNDING] = 1.0
-        return {name: found[:, k].reshape(beyond.shape) for k, name in enumerate(wanted)}
-
-    def _interpolated(self, positions, values):
-        """(queries, columns), as scipy's RegularGridInterpolator gives it in twice to four times as long."""
-        shape, flat = values.shape[:-1], np.ascontiguousarray(values.reshape(-1, values.shape[-1]))
-        strides = [int(np.prod(shape[k + 1 :])) for k in range(len(shape))]
-        found = np.zeros((len(positions[0]), flat.shape[1]))
-        for start in range(0, len(found), CHUNK):
-            chunk = slice(start, start + CHUNK)
-            below = [np.minimum(p[chunk].astype(np.intp), n - 2) for p, n in zip(positions, shape)]
-            above = [p[chunk] - k for p, k in zip(positions, below)]
-            first = sum(k * stride for k, stride in zip(below, strides))
-            for corner in product((0, 1), repeat=len(shape)):
-                weight = np.prod([w if up else 1.0 - w for w, up in zip(above, corner)], axis=0)
-                found[chunk] += weight[:, None] * flat[first + np.dot(corner, strides)]
-        return found
+        return {name: found[..., k] for k, name in enumerate(wanted)}
 
     def maxwell(self):
         """The same table for Maxwell-distributed speeds, its first axis being their root mean square.

@@ -14,7 +14,6 @@ from ..runs.files import replacing
 NANO = 1e9
 OURS, PAPER = "#111111", "#7b3fa0"  # the colours of what is ours and what is a paper's
 DOTS_PER_INCH = 80  # a gallery of all of a study's figures stays below 1.5 MB
-COLOURS, KEPT = 256, 192  # of a small picture, and how many of them stay as they are
 
 _SETTINGS = {
     "font.size": 11,
@@ -96,21 +95,9 @@ def run_title(run, addition=None):
 
 
 def save_small(figure, file):
-    """Save a matplotlib Figure as a PNG with a palette, at less than half the size.
-
-    Its commonest colours, those of lines, markers and areas, stay what they are; shades between them are merged.
-    """
+    """Save a matplotlib Figure as a PNG with a palette, at less than half the size."""
     image = io.BytesIO()
     figure.savefig(image, dpi=DOTS_PER_INCH)
-    picture = Image.open(image).convert("RGB")
-    counts = sorted(picture.getcolors(picture.width * picture.height), reverse=True)
-    kept = [colour for _, colour in counts[:KEPT]]
-    merged = picture.quantize(COLOURS - KEPT, dither=Image.Dither.NONE).convert("RGB")
-    palette = kept + [colour for _, colour in merged.getcolors(COLOURS)]
-    shades, places = np.unique(np.asarray(picture).reshape(-1, 3), axis=0, return_inverse=True)
-    distance = np.abs(shades[:, None].astype(np.int16) - np.array(palette, dtype=np.int16)).sum(axis=2)
-    small = distance.argmin(axis=1).astype(np.uint8)[places.reshape(picture.height, picture.width)]
-    small = Image.fromarray(small, "P")
-    small.putpalette([value for colour in palette for value in colour])
+    small = Image.open(image).convert("RGB").quantize(256, kmeans=1, dither=Image.Dither.NONE)
     with replacing(file) as out:
         small.save(out, format="png", optimize=True)

@@ -45,37 +45,31 @@ class Scene:
         return None
 
 
-@dataclass(frozen=True)
-class Collection:
-    """What collect() found."""
+def collect(paths, scene, notes, problems):
+    """(RunFolders that ended and are of the scene, tables (.csv) of runs) of paths: of run folders, and those in
+    folders at most LEVELS below.
 
-    runs: tuple  # of RunFolder: ended, of the scene
-    tables: tuple  # of Path: files with runs of an earlier analysis
-    notes: tuple  # of str, one a run left out for a good reason
-    problems: tuple  # of str, one a path or run that could not be read
-
-
-def collect(paths, scene):
-    """Collection of the run folders at the paths, or in folders at most LEVELS below them, and of tables (.csv)."""
+    notes and problems (lists of str) get a line for each run left out for a good reason, and for each path or run that
+    could not be read."""
     is_table = lambda path: path.suffix == ENDING and path.is_file()
-    tables = [path for path in map(Path, paths) if is_table(path)]
-    folders = run_folders([path for path in paths if not is_table(Path(path))])
-    runs, notes, problems = [], [], [problem for _, problem in folders if problem]
-    for path in (path for path, problem in folders if not problem):
-        if not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
+    runs = []
+    for path, problem in run_folders([path for path in paths if not is_table(Path(path))]):
+        if problem:
+            problems.append(problem)
+        elif not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
             notes.append(f"{path}: has not ended, left out")
-            continue
-        try:
-            run = open_run(path)
-        except RunFolderError as failure:
-            problems.append(str(failure))
-            continue
-        reason = scene.why_not(run)
-        if reason:
-            notes.append(f"{path}: {reason}, left out")
         else:
-            runs.append(run)
-    return Collection(tuple(runs), tuple(tables), tuple(notes), tuple(problems))
+            try:
+                run = open_run(path)
+            except RunFolderError as failure:
+                problems.append(str(failure))
+                continue
+            reason = scene.why_not(run)
+            if reason:
+                notes.append(f"{path}: {reason}, left out")
+            else:
+                runs.append(run)
+    return runs, list(filter(is_table, map(Path, paths)))
 
 
 def run_folders(paths):
@@ -99,12 +93,9 @@ def run_folders(paths):
             if folder.resolve() not in known:
                 known.add(folder.resolve())
                 found.append((folder, None))
-        if not folders and os.path.isdir(path):
-            empty.append(
-                (None, f"{path}: no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below")
-            )
-        elif not folders and os.path.exists(path):
-            empty.append((None, f"{path}: is not a folder"))
+        if not folders and os.path.exists(path):
+            there = f"no run folder ({RUN_FILE}) there, nor in folders up to {LEVELS} levels below"
+            empty.append((None, f"{path}: {there}"))
         elif not folders:
             found.append((None, f"{path}: " + ("no run folder matches" if pattern else "no such folder")))
     return found or empty

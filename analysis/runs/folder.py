@@ -99,14 +99,6 @@ class StateSequence(Sequence):
         """Index of the state whose time is nearest to `time` [s]."""
         return int(np.argmin(np.abs(self.times - time)))
 
-    def arrays(self, index, names):
-        """Some arrays of a state by name, without reading the others; their values are checked, not their shapes."""
-        file = self.files[index]
-        arrays = read_arrays(file, names, sha256=self._sum(file))
-        for quantity in (quantity for quantity in self.kind.states if quantity.name in arrays):
-            _require_values(file, quantity, arrays[quantity.name])
-        return arrays
-
     def _sum(self, file):
         return sum_in(self.sums, file.parent.parent, f"{STATES_FOLDER}/{file.name}")
 

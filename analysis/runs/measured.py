@@ -48,10 +48,16 @@ def outcome_of_run(run):
         raise RunFolderError(f"{run.path / STATES_FOLDER}: the first and the last state don't hold the same grains")
     on_plate = has_plate(vars(start))
     try:
-        found = plate_outcome(vars(start), vars(end), met(run)) if on_plate else _of_two(start, end, met(run))
+        if on_plate:
+            found = plate_outcome(vars(start), vars(end), met(run))
+        else:
+            at_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
+            found = collision_outcome(*at_start, end.velocity, end.contact_pairs, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
-    if _passes(run) or not all(name in run.derived for name in CONSTANTS):
+    # The run has found that they never touch on their straight ways (which format 1 does not say).
+    passes = run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
+    if passes or not all(name in run.derived for name in CONSTANTS):
         return found
     touch = time_of_touch(run)
     before = np.flatnonzero(is_recent(run.states.times, end.time, touch))[:-1]
@@ -70,13 +76,3 @@ def derived_constants(run, *names):
         return [float(run.derived[name]) for name in names]
     except (KeyError, TypeError, ValueError) as error:
         raise RunFolderError(f"{run.path}: cannot be measured: {error}") from None
-
-
-def _passes(run):
-    """Whether a RunFolder's aggregates never touch on their straight ways, as its run has found (not in format 1)."""
-    return run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
-
-
-def _of_two(start, end, met):
-    of_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
-    return collision_outcome(*of_start, end.velocity, end.contact_pairs, met)

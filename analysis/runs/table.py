@@ -15,7 +15,6 @@ import pandas
 
 from ..printable import printable
 from .files import RunFolderError, read_text
-from .folder import open_run
 
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
@@ -41,21 +40,12 @@ class TableError(Exception):
     """A file that is no table of runs; the message is one line."""
 
 
-class NoRunFolder(Exception):
-    """A row was read from a table: its run folder is not at hand."""
-
-
 def make_table(measured):
     """DataFrame from (folder, {column: value}) of each run."""
     rows = [
         {RUN: printable(Path(folder).absolute().name), FOLDER: str(folder), **values} for folder, values in measured
     ]
     return pandas.DataFrame(rows)
-
-
-def columns_text(columns):
-    """'name [unit]: meaning', a line a column."""
-    return "\n".join(f"{c.name}{f' [{c.unit}]' if c.unit else ''}: {c.meaning}" for c in columns)
 
 
 def described(table, columns):
@@ -66,19 +56,11 @@ def described(table, columns):
     return table
 
 
-def run_folder(row):
-    """RunFolder of a row (from itertuples); NoRunFolder where it was read from a table, RunFolderError where it is
-    damaged."""
-    if not isinstance(row.folder, str):
-        raise NoRunFolder(row.run)
-    return open_run(row.folder)
-
-
 def table_text(table, columns, head):
     """The CSV file (str) of a table; head: a dict that JSON can hold."""
     out = io.StringIO()
-    lines = [json.dumps(head, allow_nan=False), *columns_text(columns).splitlines()]
-    out.writelines(f"# {line}\n" for line in lines)
+    about = (f"{c.name}{f' [{c.unit}]' if c.unit else ''}: {c.meaning}" for c in columns)
+    out.writelines(f"# {line}\n" for line in (json.dumps(head, allow_nan=False), *about))
     names = [RUN, *(column.name for column in columns)]
     table.to_csv(out, columns=names, index=False, quoting=csv.QUOTE_MINIMAL, lineterminator="\n")
     return out.getvalue()

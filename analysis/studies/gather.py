@@ -39,10 +39,9 @@ def gather(study, paths):
     Of runs with the same values in scene.key one is counted, since more would make errors too small: a table's row
     before a folder (whose states serve figures), and of folders the longest run. Of runs that must be alike and are
     not none is counted."""
-    collection = collect(paths, study.scene)
-    found = Gathered(list(collection.notes), list(collection.problems))
-    rows, origins = {}, []
-    for file in collection.tables:
+    found, rows, origins = Gathered([], []), {}, []
+    runs, tables = collect(paths, study.scene, found.notes, found.problems)
+    for file in tables:
         try:
             own, origin = _read(study, file)
         except TableError as error:
@@ -52,11 +51,11 @@ def gather(study, paths):
             found.notes.append(f"{file}: {known} runs are in a table before it, which counts")
         rows |= {key: row for key, row in own.items() if key not in rows}
         origins.append(origin)
-    unlike = _unlike(study, collection.runs) if study.alike else None
+    unlike = _unlike(study, runs) if study.alike else None
     if unlike:
         found.problems.append(unlike)
         return found
-    measured = _measure(study, collection.runs, rows, found)
+    measured = _measure(study, runs, rows, found)
     if measured:
         origins.append(provenance([run for run, _ in measured]))
     parts = [pandas.DataFrame(rows.values()), make_table((run.path, values) for run, values in measured)]

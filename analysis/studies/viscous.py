@@ -86,8 +86,8 @@ def _neighbours(run, row):
     read."""
     if abs(row["velocity"] / V50 - 1) > 2e-3 or abs(row["impact"] ** 2 - 0.25) > 5e-4:
         return np.nan, np.nan
-    arrays = (run.states.arrays(k, ("position", "velocity")) for k in range(len(run.states)))
-    speeds = [pair_velocities(own["position"], own["velocity"], NEAR * run.derived["grainRadius"]) for own in arrays]
+    near = NEAR * run.derived["grainRadius"]
+    speeds = [pair_velocities(state.position, state.velocity, near) for state in run.states]
     fast = max(np.count_nonzero(sign * own > FAST) for own in speeds for sign in (1, -1))
     return float(np.nanmax([root_mean_square(own) for own in speeds])), fast / len(run.start.radius)
 
