@@ -276,11 +276,7 @@ def power_law_index(sizes, most=None):
     Returns
     -------
     index, error : float
-        With its standard error. NaN for fewer than FEWEST fragments, and where it is not within RANGE.
-
-    >>> round(power_law_index([1] * 64 + [2] * 16 + [4] * 4 + [8])[0], 1)
-    2.7
-    """
+        With its standard error. NaN for fewer than FEWEST fragments, and where it is not within RANGE."""
     sizes = np.asarray(sizes)
     if len(sizes) < FEWEST:
         return np.nan, np.nan

@@ -27,7 +27,7 @@ from .variables import FIT, ONE_CONTACT, energy, fit_and_held_out, scaled, slow,
 
 MEMBERS = 40  # fits with random weights
 ORDER = 3  # the best one for held-out runs: Brier score 0.115, of second order 0.133
-STRENGTHS = 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation, of which cross-validation chooses one
+STRENGTHS = 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation; cross-validation chooses one
 STRENGTH = 3.0  # which it chooses for all runs together
 LEVEL = 0.9  # of all intervals
 SEED, FOLDS = 1, 5  # of cross-validation
@@ -109,8 +109,8 @@ class Model:
             return fits[0], None
         low, high = np.quantile(fits[1:], (0.5 - LEVEL / 2, 0.5 + LEVEL / 2), axis=0)
         own = energy(points)
-        never_seen = np.where((own >= ONE_CONTACT) & (own < self.slow.energy), self.slow.most, 0.0)
-        return fits[0], np.maximum((high - low) / 2, never_seen[:, None])
+        never_yet = np.where((own >= ONE_CONTACT) & (own < self.slow.energy), self.slow.most, 0.0)
+        return fits[0], np.maximum((high - low) / 2, never_yet[:, None])
 
     def touching(self, points, averaged=False):
         """Probability (n,) that aggregates with b < 1 touch; beyond the runs that of the nearest end."""

@@ -10,7 +10,7 @@ the mass of the largest piece less m_t, over m_p: the growth efficiency of Araka
     erosion         F2      the target is not heavier, and keeps at least KEPT of its mass
     fragmentation   F1      it keeps less
 
-Names of the kinds: Guettler et al. (2010, section 4). Mass transfer and erosion are told apart as in Windmark et al.
+Names of the kinds: Guettler et al. (2010, section 4). Mass transfer and erosion differ, as in Windmark et al.
 (2012, section 2), by the sign of the target's change. KEPT is the usual line of catastrophic disruption. Sticking,
 STAYS and OWN are those of measures.outcome; its bouncing counts what both aggregates lose, B1 what the projectile does.
 """
@@ -36,12 +36,7 @@ def outcome(row):
     Returns
     -------
     ndarray of str, (n,) or ()
-        Of KINDS.
-
-    >>> row = {"mass_ratio": np.array([1.0, 0.1]), "largest": np.array([0.5, 0.8]), "second": 0.5, "own": 1.0}
-    >>> outcome(row).tolist()
-    ['bouncing', 'erosion']
-    """
+        Of KINDS."""
     target = _target(row["mass_ratio"])
     projectile = 1 - target
     gain = (row["largest"] - target) / projectile
@@ -51,11 +46,7 @@ def outcome(row):
 
 
 def change(largest, mass_ratio):
-    """What the target gains over the projectile's mass; where it is lighter, what it loses over its own, below 0.
-
-    >>> change(0.9, 0.25).item(), change(0.4, 0.25).item()
-    (0.5, -0.5)
-    """
+    """What the target gains over the projectile's mass; where it is lighter, what it loses over its own, below 0."""
     target = _target(mass_ratio)
     more = largest - target
     return more / np.where(more > 0, 1 - target, target)

@@ -66,11 +66,7 @@ def scaled(points):
 
 
 def energy(points):
-    """Kinetic energy of the collision over E_break (n,).
-
-    >>> energy(pandas.DataFrame({"velocity": [2.0], "grains": [100], "mass_ratio": [1.0]})).tolist()
-    [100.0]
-    """
+    """Kinetic energy of the collision over E_break (n,)."""
     return points.grains * points.mass_ratio / (1 + points.mass_ratio) * points.velocity**2 / 2
 
 

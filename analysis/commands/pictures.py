@@ -33,7 +33,7 @@ def add_parsers(commands):
     film.description = "Write a film with a frame for each saved state. Needs ffmpeg."
     rate = number(lambda rate: 0.1 <= rate <= 120, "from 0.1 to 120")
     film.add_argument("--rate", metavar="FRAMES", type=rate, default=10.0, help="states a second (default: 10)")
-    film.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is seen (default: z)")
+    film.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is viewed (default: z)")
     film.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
     width = number(lambda width: 160 <= width <= 3840 and width == int(width), "a whole number from 160 to 3840")
     film.add_argument("--width", metavar="PIXELS", type=width, default=960, help="from 160 to 3840 (default: 960)")

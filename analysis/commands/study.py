@@ -59,7 +59,7 @@ def run(options):
         return 0
     study = find(options.name)
     if not options.runs:
-        complain(f"study {options.name}: of which runs? Give run folders, folders of them, or a runs.csv")
+        complain(f"study {options.name}: no runs given; must be run folders, folders of them, or a runs.csv")
         return FAILED
     _require_places(options, study)
     found = gather(study, options.runs)

@@ -1,4 +1,4 @@
-"""A film of a run: a frame for each saved state, seen along an axis, with a scale bar; encoded by ffmpeg."""
+"""A film of a run: a frame for each saved state, viewed along an axis, with a scale bar; encoded by ffmpeg."""
 
 import os
 import shutil
@@ -36,7 +36,7 @@ class NoFilm(Exception):
 
 
 def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
-    """Write the states of a RunFolder as a film, seen from far along an axis; the file appears when it is complete.
+    """Write the states of a RunFolder as a film, viewed from far along an axis; the file appears when it is complete.
 
     Parameters
     ----------

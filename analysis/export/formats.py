@@ -91,7 +91,7 @@ def poly_data(points, point_fields, lines=None, cell_fields=None, field_data=Non
 
 
 def _multi_block(blocks):
-    """Text of a .vtm file: blocks {name: file}, files as seen from its folder."""
+    """Text of a .vtm file: blocks {name: file}, files relative to its folder."""
     sets = [
         f'<DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
         for index, (name, file) in enumerate(blocks.items())

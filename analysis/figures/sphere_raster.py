@@ -1,4 +1,4 @@
-"""Spheres seen along -z, painted into a pixel image with a depth buffer: the cost is pixels times spheres,
+"""Spheres, viewed along -z, painted into a pixel image with a depth buffer: the cost is pixels times spheres,
 not objects."""
 
 import numpy as np
@@ -8,7 +8,7 @@ _LIGHT = np.array([-0.45, 0.55, 0.70]) / np.linalg.norm([-0.45, 0.55, 0.70])
 
 
 def paint_spheres(position, radius, colour, window, pixel, fading=4.0):
-    """Image (H,W,3) of floats 0 to 1, row 0 at the smallest y, of spheres seen from large z (orthographic).
+    """Image (H,W,3) of floats 0 to 1, row 0 at the smallest y, of spheres viewed from large z (orthographic).
 
     position (N,3), radius (N,), window (x0, x1, y0, y1) and pixel (edge length) in one unit; colour (N,3) 0
     to 1. Spheres are shaded by a light from the upper left, and darker the deeper they lie: over `fading` radii of the
@@ -33,9 +33,9 @@ def _covered(position, radius, origin, size, pixel):
 
     def covered(rows, c, r):
         left = pixels[rows] ** 2 - (c + 0.5 - column[rows]) ** 2 - (r + 0.5 - row[rows]) ** 2
-        seen = (left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1])
-        rows, c, r = rows[seen], c[seen], r[seen]
-        return rows, r * size[0] + c, position[rows, 2] + pixel * np.sqrt(left[seen])
+        shown = (left > 0) & (c >= 0) & (c < size[0]) & (r >= 0) & (r < size[1])
+        rows, c, r = rows[shown], c[shown], r[shown]
+        return rows, r * size[0] + c, position[rows, 2] + pixel * np.sqrt(left[shown])
 
     inside = (column > -pixels) & (column < size[0] + pixels) & (row > -pixels) & (row < size[1] + pixels)
     small = np.flatnonzero(inside & (pixels <= _SMALL))

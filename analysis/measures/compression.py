@@ -123,11 +123,7 @@ def largest_return_speed(time, v, start):
     """(speed [m/s], time [s]) at which the halves part fastest after the largest compression (A24 section 5.3).
 
     That is minus the minimum of v (T,) after `start`; (None, None) if v is never negative then, or if its minimum is
-    the last sample, so that the speed may still grow.
-
-    >>> largest_return_speed([0.0, 1.0, 2.0, 3.0], [2.0, 0.0, -1.0, -0.5], 1.0)
-    (1.0, 2.0)
-    """
+    the last sample, so that the speed may still grow."""
     time, v = np.asarray(time, dtype=float), np.asarray(v, dtype=float)
     later = np.flatnonzero((time >= start) & np.isfinite(v))
     if not later.size:

@@ -146,9 +146,9 @@ def _why_breaking(kind, pieces, counted):
     cut, side, target = *pieces.loose_cuts(), pieces.target(counted)
     for piece in largest:
         lost = side[cut == piece].max(initial=0.0) / pieces.mass[counted].sum()
-        seen, left = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
-        seen, left = (classify(*(masses + [0.0])[:2], target=target) for masses in (seen, left))
-        if seen == kind != left:
+        now, later = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
+        now, later = (classify(*(masses + [0.0])[:2], target=target) for masses in (now, later))
+        if now == kind != later:
             return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
 
 
@@ -159,9 +159,9 @@ def _why_meeting(kind, pieces, counted):
     whole = shares[largest] + shares[near].sum()
     if second is not None and not near[second]:
         other = shares[second] + shares[pieces_that_can_meet(second, *pieces.flight, EVER) & ~near].sum()
-    seen, target = (shares[largest], 0.0 if second is None else shares[second]), pieces.target(counted)
+    now, target = (shares[largest], 0.0 if second is None else shares[second]), pieces.target(counted)
     # otherwise pieces of such masses, but not those of the two aggregates
-    have_parted = classify(*seen, target=target) == kind
+    have_parted = classify(*now, target=target) == kind
     if classify(*sorted((whole, other), reverse=True), have_parted, target) != kind:
         return f"pieces of {whole - shares[largest]:.0%} of the mass may still meet the largest"
 

@@ -63,11 +63,7 @@ def means_of_pieces(values, labels, mass):
 
 def pair_velocities(position, velocity, distance):
     """Normal component (M,) [m/s] of the relative velocity of the pairs of grains nearer than `distance` [m],
-    positive where they approach (A22 section 5.1); position (N,3) [m], velocity (N,3) [m/s].
-
-    >>> pair_velocities(np.array([[0.0, 0, 0], [1, 0, 0]]), np.array([[2.0, 1, 0], [-1, 0, 0]]), 1.5)
-    array([3.])
-    """
+    positive where they approach (A22 section 5.1); position (N,3) [m], velocity (N,3) [m/s]."""
     pairs = cKDTree(position).query_pairs(distance, output_type="ndarray")
     apart = position[pairs[:, 1]] - position[pairs[:, 0]]
     relative = velocity[pairs[:, 1]] - velocity[pairs[:, 0]]

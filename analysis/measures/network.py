@@ -14,12 +14,7 @@ def contact_network(grains, pairs):
 def spanning_forest(network):
     """(order (N,), parent (N,)) int of a tree of contacts in each piece of a contact_network, rooted in its last grain.
 
-    Every grain comes after its parent in `order`; the parent of a root is -1.
-
-    >>> order, parent = spanning_forest(contact_network(4, [[1, 2], [2, 3]]))
-    >>> order.tolist(), parent.tolist()
-    ([0, 3, 2, 1], [-1, 2, 3, -1])
-    """
+    Every grain comes after its parent in `order`; the parent of a root is -1."""
     grains = network.shape[0]
     labels = connected_components(network, directed=False)[1]
     roots = np.sort(grains - 1 - np.unique(labels[::-1], return_index=True)[1])
@@ -31,11 +26,7 @@ def spanning_forest(network):
 
 
 def depths(order, parent):
-    """Contacts (N,) int between each grain and the root of its tree, of a spanning_forest.
-
-    >>> depths(*spanning_forest(contact_network(4, [[1, 2], [2, 3]]))).tolist()
-    [0, 2, 1, 0]
-    """
+    """Contacts (N,) int between each grain and the root of its tree, of a spanning_forest."""
     depth = np.zeros(len(parent), dtype=int)
     for grain in order[parent[order] >= 0]:
         depth[grain] = depth[parent[grain]] + 1
@@ -69,11 +60,7 @@ def spanned_axes(position, pairs, cell_size):
 
     position (N,3) [m], anywhere; pairs (M,2) of grains that meet as nearest images; cell_size (3,) [m]. A loop of
     contacts that comes back to an image of the grain that it left winds around the cell; the largest number of
-    independent windings of a piece is returned. With less than three the network bears no load along some direction.
-
-    >>> spanned_axes(np.zeros((1, 3)), np.empty((0, 2)), np.ones(3))
-    0
-    """
+    independent windings of a piece is returned. With less than three the network bears no load along some direction."""
     pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
     if not len(pairs):
         return 0

@@ -57,21 +57,13 @@ class Outcome:
 
 
 def sticks(largest, target):
-    """Whether aggregates stick whose largest piece and target have these fractions of their mass; arrays too.
-
-    >>> sticks(0.9, 0.5), sticks(0.98, 0.9), sticks(0.97, 0.9)
-    (True, True, False)
-    """
+    """Whether aggregates stick whose largest piece and target have these fractions of their mass; arrays too."""
     return largest - target >= (STAYS - ROUNDING) * (1.0 - target)
 
 
 def classify(f1, f2, parted=True, target=0.5):
     """Name of the outcome for the mass fractions f1 >= f2 of the two heaviest fragments, parted: whether these are
-    the two aggregates again (have_parted), and that of the target. The rule at the module's head.
-
-    >>> classify(0.5, 0.5), classify(0.95, 0.01), classify(0.5, 0.1), classify(0.5, 0.5, parted=False)
-    ('bouncing', 'sticking', 'fragmentation', 'fragmentation')
-    """
+    the two aggregates again (have_parted), and that of the target. The rule at the module's head."""
     if sticks(f1, target):
         return STICKING
     rest = (1.0 - STAYS + ROUNDING) * (1.0 - target)
@@ -86,21 +78,13 @@ def target_fraction(aggregate, mass):
 
 
 def have_parted(shares):
-    """Whether two pieces are the two aggregates again: shares (2,) of aggregate 1 in the mass of either piece.
-
-    >>> have_parted([0.0, 1.0]), have_parted([0.95, 0.1]), have_parted([0.75, 0.0]), have_parted([0.4, 0.6])
-    (True, True, False, False)
-    """
+    """Whether two pieces are the two aggregates again: shares (2,) of aggregate 1 in the mass of either piece."""
     return 1.0 - min(shares) >= OWN and max(shares) >= OWN
 
 
 def restitution(initial_velocity, final_velocity):
     """-(final . n)/|initial| with n the direction of initial; both (3,) [m/s], relative velocities of the same two
-    bodies. None where there is no initial velocity, and where it would be negative: the bodies have passed each other.
-
-    >>> restitution([-2.0, 0.0, 0.0], [0.5, 3.0, 0.0])
-    0.25
-    """
+    bodies. None without an initial velocity, and where it would be negative: the bodies have passed each other."""
     initial_velocity = np.asarray(initial_velocity, dtype=float)
     square = initial_velocity @ initial_velocity
     if not square > 0:

@@ -14,11 +14,7 @@ AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
 
 
 def nearest_image(separation, cell_size):
-    """separation (..., 3) between grains as that between their nearest images.
-
-    >>> nearest_image([0.9, -0.2, 2.1], [1.0, 1.0, 1.0]).round(6).tolist()
-    [-0.1, -0.2, 0.1]
-    """
+    """separation (..., 3) between grains as that between their nearest images."""
     separation = np.asarray(separation, dtype=float)
     return separation - cell_size * np.round(separation / cell_size)
 

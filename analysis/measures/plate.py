@@ -62,11 +62,7 @@ def with_plate(state):
 
 def classify_on_plate(on, off):
     """Name of the outcome for the mass fractions on the plate and in the heaviest piece off it: the rule at the
-    module's head.
-
-    >>> classify_on_plate(0.95, 0.01), classify_on_plate(0.05, 0.95), classify_on_plate(0.5, 0.5)
-    ('sticking', 'bouncing', 'fragmentation')
-    """
+    module's head."""
     least = MOST - ROUNDING
     return STICKING if on >= least else BOUNCING if off >= least else FRAGMENTATION
 

@@ -42,12 +42,7 @@ def closure_history(history):
 
 def closure(history):
     """Largest |E(t) - E(0)|/K(0) of a history; None where K(0) = 0. Of a compression, which starts almost at rest, it
-    is work_closure().
-
-    >>> energies = {"kinetic": np.array([4.0, 1.0]), "drag": np.array([0.0, 2.0])}
-    >>> closure({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies})
-    0.25
-    """
+    is work_closure()."""
     error = closure_history(history)
     return None if error is None else float(np.abs(error).max())
 
@@ -73,12 +68,7 @@ def fractions(history):
 
 
 def fractions_at(history, time):
-    """fractions() at one time [s] within the record, linear between samples: a dict of floats, None where K(0) = 0.
-
-    >>> energies = {"time": np.array([0.0, 1.0]), "kinetic": np.array([4.0, 1.0])}
-    >>> fractions_at({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}, 1.0)["kinetic"]
-    0.25
-    """
+    """fractions() at one time [s] within the record, linear between samples: a dict of floats, None where K(0) = 0."""
     first, last = history["time"][0], history["time"][-1]
     if not first <= time <= last:
         raise ValueError(f"time = {time}: must be within the record, {first:g} to {last:g} s")

@@ -148,11 +148,7 @@ WIDTH = 20  # of a bar
 
 
 def duration_text(seconds):
-    """02:03 or 1:02:03 for a number of seconds.
-
-    >>> duration_text(123), duration_text(3723.4)
-    ('02:03', '1:02:03')
-    """
+    """02:03 or 1:02:03 for a number of seconds."""
     return tqdm.format_interval(seconds)
 
 

@@ -48,7 +48,7 @@ MEASURED = (
         _packings,
         Column("compressed", "", "1: cut out of a compressed cell, 0: CPE", kind="i"),
         Column("pair", "", "number of the pair: the packings' seed (CPE) or that of their cell", kind="i"),
-        Column("nominal", "", "filling factor that was asked for"),
+        Column("nominal", "", "nominal filling factor"),
         Column("filling", "", "filling factor N (r/R)^3, mean of both aggregates"),
         Column("radius", "m", "R, of the sphere that holds all centres"),
     ),

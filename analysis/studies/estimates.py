@@ -35,11 +35,7 @@ class Estimate:
 
 
 def where(runs, **values):
-    """The runs with these values in their columns: numbers to a relative 1e-9, words as they are.
-
-    >>> len(where(pandas.DataFrame({"velocity": [50.1, 10**1.7], "setup": "cut"}), velocity=10**1.7, setup="cut"))
-    1
-    """
+    """The runs with these values in their columns: numbers to a relative 1e-9, words as they are."""
     for name, value in values.items():
         column = runs[name].to_numpy()
         runs = runs[column == value if isinstance(value, str) else np.isclose(column, value, rtol=SAME, atol=0.0)]
@@ -97,12 +93,7 @@ def beside(statistic, one, other, of=np.subtract):
 def fraction(runs, so, undecided=None):
     """Estimate of the fraction of runs that are so (Series of bool): p = (k + 1)/(n + 2), with the binomial error [p
     (1 - p)/n]^(1/2); undecided (Series of bool): which runs count neither way. ValueError where a pair has several
-    runs.
-
-    >>> runs = pandas.DataFrame({"pair": [1, 2, 3, 4]})
-    >>> print(fraction(runs, runs.pair < 4))
-    0.67 ± 0.24 (3 of 4)
-    """
+    runs."""
     if runs["pair"].duplicated().any():
         raise ValueError("a fraction of runs: a pair has several runs; must have one")
     open_runs = 0 if undecided is None else int(undecided.sum())
@@ -123,11 +114,7 @@ def ending(runs, outcome):
 def threshold(x, y):
     """x at which y (K,) first falls from above 0 to 0 or below, linear between rising x (K,); NaN where it does not.
     Of mean growth efficiency against velocity: the threshold velocity of fragmentation (Arakawa et al. 2022, section
-    3.2).
-
-    >>> float(threshold([10.0, 20.0, 40.0], [1.0, 0.5, -0.5]))
-    30.0
-    """
+    3.2)."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     falls = np.flatnonzero((y[:-1] > 0) & (y[1:] <= 0))
     if not len(falls):
@@ -138,11 +125,7 @@ def threshold(x, y):
 
 def exponent(x, y):
     """n of y ~ x^n: least squares of the logarithms; NaN with fewer than three points, or where one of y is not
-    positive.
-
-    >>> round(exponent([1.0, 2.0, 4.0], [3.0, 12.0, 48.0]), 9)
-    2.0
-    """
+    positive."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) < 3 or not (y > 0).all():
         return math.nan

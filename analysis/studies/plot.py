@@ -26,7 +26,7 @@ class CannotPlot(ValueError):
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """Figure of many runs: a quantity against one of their columns, with standard errors over pairs of aggregates.
 
-    Pairs are told apart by their seed and files; open points are single pairs. A fraction of n runs is (k + 1)/(n +
+    Pairs differ in their seed and files; open points are single pairs. A fraction of n runs is (k + 1)/(n +
     2), with the binomial error. Left out are runs without a value, with a d_max that is only a bound, and of
     fractions those that never met, are undecided or have not ended; the title counts them.
 

@@ -173,11 +173,7 @@ def falls_at(runs):
 
 @lru_cache(maxsize=4096)
 def sizes_of(text):
-    """Grains of fragments (K,) int from '1x43957 2x12'; ValueError for another text.
-
-    >>> sizes_of("1x5 2x1").tolist()
-    [5, 1, 1]
-    """
+    """Grains of fragments (K,) int from '1x43957 2x12'; ValueError for another text."""
     pairs = [part.split("x") for part in text.split()]
     return np.repeat([int(grains) for _, grains in pairs], [int(number) for number, _ in pairs])
 

@@ -42,11 +42,7 @@ def bond_constants(
 
 
 def neck_length(neck, radius):
-    """d [m] of a neck, bounded by a fillet of radius beta^2/(2 (1 - beta)) grain radii: S17 eqs 1, 2.
-
-    >>> round(neck_length(0.5, 1.0), 6)
-    0.4
-    """
+    """d [m] of a neck, bounded by a fillet of radius beta^2/(2 (1 - beta)) grain radii: S17 eqs 1, 2."""
     fillet = neck**2 / (2.0 * (1.0 - neck))
     return 2.0 * radius * fillet / (1.0 + fillet)
 
@@ -63,11 +59,7 @@ def stretching_period(pair):
 
 
 def shrunk_radius(neck):
-    """R'/R_g of a grain that has given two necks their volume, that between fillet and spheres (S17 3.3, Fig. 4).
-
-    >>> round(shrunk_radius(0.7), 4)
-    0.9158
-    """
+    """R'/R_g of a grain that has given two necks their volume, that between fillet and spheres (S17 3.3, Fig. 4)."""
     if neck == 0:
         return 1.0
     x, half = neck**2 / (2.0 * (1.0 - neck)), neck_length(neck, 1.0) / 2.0

@@ -11,11 +11,7 @@ DENSEST = 0.74  # phi_max of T23: spheres of one size, closest packed
 
 
 def rolling_energy(surface_energy, grain_radius, critical_rolling):
-    """E_roll = 6 pi^2 gamma r0 xi_crit [J], of rolling by 90 degrees: K13 eq 1.
-
-    >>> round(rolling_energy(0.1, 1e-7, 0.8e-9) * 1e16, 2)
-    4.74
-    """
+    """E_roll = 6 pi^2 gamma r0 xi_crit [J], of rolling by 90 degrees: K13 eq 1."""
     return 6.0 * pi**2 * surface_energy * grain_radius * critical_rolling
 
 
