@@ -5,8 +5,7 @@ import argparse
 import os
 import sys
 
-from .libraries import require_libraries
-from .signals import ENDING, end_quietly
+from .startup import ENDING, end_quietly, require_libraries
 
 if __name__ == "__main__":
     end_quietly(*ENDING)

@@ -22,8 +22,7 @@ import signal
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))  # the repository's top
-from analysis.libraries import require_libraries
-from analysis.signals import end_quietly
+from analysis.startup import end_quietly, require_libraries
 
 end_quietly(signal.SIGINT)
 require_libraries()

@@ -28,8 +28,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-from analysis.libraries import require_libraries
-from analysis.signals import end_quietly
+from analysis.startup import end_quietly, require_libraries
 
 end_quietly(signal.SIGINT)
 require_libraries()

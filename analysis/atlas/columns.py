@@ -106,12 +106,7 @@ def is_run_of_the_atlas(run):
 
 
 def measure(run):
-    """{column: value} of a run of the atlas; RunFolderError where it lacks a parameter.
-
-    Parameters
-    ----------
-    run : runs.folder.RunFolder
-    """
+    """{column: value} of a RunFolder of the atlas; RunFolderError where it lacks a parameter."""
     try:
         row = _scene(run)
     except (KeyError, TypeError, ValueError) as error:
@@ -262,21 +257,11 @@ RANGE = -3.0, 8.0  # of the index
 
 
 def power_law_index(sizes, most=None):
-    """Index n of dN/dm ~ m^-n of fragments, by maximum likelihood.
+    """(index n of dN/dm ~ m^-n of fragments by maximum likelihood, its standard error), of the grains (K,) of each
+    fragment; most: the largest possible one, by default all grains together. NaN for fewer than FEWEST fragments, and
+    where the index is not within RANGE.
 
-    Clauset, Shalizi & Newman (2009), eq 3.7 with an upper end: mass is conserved, so that the index may be below 1.
-
-    Parameters
-    ----------
-    sizes : array (K,)
-        Grains of each fragment.
-    most : int, optional
-        Largest possible fragment; by default all grains together.
-
-    Returns
-    -------
-    index, error : float
-        With its standard error. NaN for fewer than FEWEST fragments, and where it is not within RANGE."""
+    Clauset, Shalizi & Newman (2009), eq 3.7 with an upper end: mass is conserved, so that the index may be below 1."""
     sizes = np.asarray(sizes)
     if len(sizes) < FEWEST:
         return np.nan, np.nan

@@ -57,7 +57,7 @@ Of {structure}.
 Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of \
 the larger aggregate,
 mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of \
-both){axis}.
+both).
 Columns: p_...: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the \
 aggregates touch,
 {impact} and averaged over orientations; error_...: their 90 % half widths,
@@ -67,11 +67,12 @@ two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all piec
 the largest piece;
 where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its \
 own at most) over the smaller one's,
-largest_fragmentation: the largest piece over the larger aggregate{intervals}; inside: 1 within the convex hull of \
+largest_fragmentation: the largest piece over the larger aggregate; _low, _high: ends of the intervals that hold 90 % of \
+such collisions, for the largest piece of those that leave more than one; inside: 1 within the convex hull of \
 the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther \
 beyond, where values are those of the
-nearest node within; runs: number of runs within {near:g} of the scatter{near_impact}. Between nodes: multilinear in \
+nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in \
 the scaled coordinates (pieces better as
 second (1 + mass_ratio)/mass_ratio and c = largest (1 + mass_ratio) - 1, where that is above 0 c/mass_ratio); the \
 last axis is the fastest.
@@ -89,18 +90,9 @@ OF_STRUCTURE = {
     CLOSE_PACKED: "close-packed aggregates (CPE: a dense packing with grains taken out), which bounce several times as "
     "often as compressed ones of\ntheir filling",
 }
-AVERAGED = {
-    "impact": "averaged over impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2,",
-    "near_impact": ",\nat any impact parameter",
-    "axis": "",
-    "intervals": "",
-}
 OF_IMPACT = {
-    "axis": ", square of the impact parameter\nb in units of the sum of these radii",
-    "impact": "at that impact parameter",
-    "intervals": "; _low, _high: ends of the intervals that hold 90 % of such collisions,\nfor the largest piece of "
-    "those that leave more than one",
-    "near_impact": ", of b^2 too",
+    True: "averaged over impact parameters up to the sum of the radii (5/3)^(1/2) R_g, uniform in b^2,",
+    False: "at each impact parameter (impact_square: b^2 in units of the sum of these radii),",
 }
 
 
@@ -153,7 +145,7 @@ def outcome_grid(model, structure, averaged, version):
         energy=model.slow.energy,
         most=model.slow.most,
         contact=ONE_CONTACT,
-        **(AVERAGED if averaged else OF_IMPACT),
+        impact=OF_IMPACT[averaged],
     )
     return OutcomeTable(axes, columns, values, tuple(about.splitlines()))
 

@@ -26,17 +26,8 @@ OF_KIND = {"gain_mass_transfer": "mass_transfer", "loss_erosion": "erosion", "la
 
 
 def outcome(row):
-    """Outcomes by the rules of this module.
-
-    Parameters
-    ----------
-    row : DataFrame or mapping
-        Columns (n,) or numbers: mass_ratio, largest, second, own.
-
-    Returns
-    -------
-    ndarray of str, (n,) or ()
-        Of KINDS."""
+    """Outcomes, of KINDS (n,) or (), by the rules of this module, of the columns (n,) or numbers mass_ratio, largest,
+    second and own of a DataFrame or mapping."""
     target = _target(row["mass_ratio"])
     projectile = 1 - target
     gain = (row["largest"] - target) / projectile

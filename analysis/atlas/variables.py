@@ -39,14 +39,8 @@ ONE_CONTACT = (sticking_velocity_without_drag(pair_constants(ICE, 1e-7)) / break
 
 
 def variables(table):
-    """Points of a table of runs (DataFrame, n rows, with the columns of atlas.columns).
-
-    Returns
-    -------
-    DataFrame, n rows
-        FEATURES: velocity over v_break, grains of the larger aggregate, mass ratio (at most 1), filling factor (mean
-        by mass of both), square of the impact parameter.
-    """
+    """Points (n rows) of a table of runs with the columns of atlas.columns: velocity over v_break, grains of the larger
+    aggregate, mass ratio (at most 1), filling factor (mean by mass of both), square of the impact parameter."""
     share = 1 / (1 + table.mass_ratio)
     return pandas.DataFrame(
         {

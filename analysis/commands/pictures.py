@@ -121,11 +121,7 @@ def draw_plot(options):
     if file.suffix != ".png":
         complain(f"{file}: must end in .png")
         return FAILED
-    where = dict(options.where)
-    if len(where) < len(options.where):
-        complain("--where: must be given once for a column")
-        return FAILED
-    logarithmic = "" if options.log == "none" else options.log
+    where, logarithmic = dict(options.where), "" if options.log == "none" else options.log
     structure = any("largest_" in name for name in (options.what, options.x, options.by, *where))
     measured, problems = measure(options.runs, lambda run: row(run, structure))
     for problem in problems:

@@ -89,17 +89,14 @@ def _require_places(options, study):
         require_output(options.page)
     if options.figures:
         file = Path(options.figures) / TABLE_FILE
-        if not _is_only_input(options):
+        if not _is_only_input(file, options.runs):
             require_output(file, inputs=options.runs)
         require_own(file, study.name)
 
 
-def _is_only_input(options):
-    """Whether the table in the folder is all that is read: then it stays as it is."""
-    from ..studies.gather import TABLE_FILE
-
-    table = os.path.realpath(os.path.join(options.figures, TABLE_FILE))
-    return [os.path.realpath(path) for path in options.runs] == [table]
+def _is_only_input(table, runs):
+    """Whether a table is all that is read: then it stays as it is."""
+    return [os.path.realpath(path) for path in runs] == [os.path.realpath(table)]
 
 
 def _text(kind, study, found, rows):
@@ -131,7 +128,7 @@ def _write(options, study, found, runs, rows):
         folder.mkdir(parents=True, exist_ok=True)
         readme = folder / "README.md"
         text = readme.read_text(encoding="utf-8") if readme.is_file() else ""
-        if options.figures and not _is_only_input(options):
+        if options.figures and not _is_only_input(folder / TABLE_FILE, options.runs):
             write_file(folder / TABLE_FILE, found.csv(study))
         write_file(folder / "comparison.csv", of_table(rows).to_csv(index=False, float_format="%.10g"))
         drawn = _draw(study, runs, folder, text if START in text else None)

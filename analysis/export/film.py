@@ -38,26 +38,9 @@ class NoFilm(Exception):
 def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
     """Write the states of a RunFolder as a film, viewed from far along an axis; the file appears when it is complete.
 
-    Parameters
-    ----------
-    run : RunFolder
-    file : Path
-        With one of ENDINGS: H.264 in that container, or a .gif that repeats.
-    frames_per_second : float
-    width : int
-        In pixels; less where the film would be more than 9/8 as high.
-    along : str
-        Axis, one of AXES. Grains of a periodic cell are drawn within it.
-    colour : str
-        One of grain_colours.COLOURINGS.
-
-    Raises
-    ------
-    NoFilm
-        If ffmpeg is missing or fails.
-    RunFolderError
-        If a state is damaged, or there is none.
-    """
+    file : Path with one of ENDINGS, H.264 in that container, or a .gif that repeats. width : pixels; less where the
+    film would be more than 9/8 as high. along : one of AXES; grains of a periodic cell are drawn within it. colour :
+    one of grain_colours.COLOURINGS. NoFilm if ffmpeg is missing or fails, RunFolderError without a whole state."""
     if file.suffix not in ENDINGS:  # before the frames are drawn
         raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
     if file.suffix == ".gif" and frames_per_second > _FASTEST_GIF:

@@ -199,23 +199,19 @@ def force_kinds(normal_force, pull_off_force):
     return {"compression": compression, "tension": tension, "other": ~(compression | tension)}
 
 
-def _in_slab(position, unit):
-    return np.abs(position[:, 2]) <= _HALF_SLAB * unit
-
-
 def _window(states, unit):
     """(x0, x1, y0, y1) in grain radii around the grains of the slab, half a percent of them aside, not wider than high:
     the force chains are where the aggregates meet."""
-    places = np.concatenate([s.position[_in_slab(s.position, unit)][:, :2] for s in states]) / unit
-    if not len(places):
-        places = np.concatenate([s.position[:, :2] for s in states]) / unit
+    every = np.concatenate([s.position for s in states]) / unit
+    inside = np.abs(every[:, 2]) <= _HALF_SLAB
+    places = every[inside if inside.any() else slice(None), :2]
     half_x, half_y = np.percentile(np.abs(places), 99.5, axis=0) * 1.03 + 2.0
     half_x = min(half_x, half_y)
     return -half_x, half_x, -half_y, half_y
 
 
 def _draw_forces(axes, state, unit, pull_off_force_over_radius, window):
-    slab = _in_slab(state.position, unit)
+    slab = np.abs(state.position[:, 2]) <= _HALF_SLAB * unit
     pairs = state.contact_pairs
     inside = slab[pairs[:, 0]] & slab[pairs[:, 1]]
     ends = state.position[pairs[inside]][:, :, :2] / unit

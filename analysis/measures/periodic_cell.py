@@ -19,38 +19,24 @@ def nearest_image(separation, cell_size):
     return separation - cell_size * np.round(separation / cell_size)
 
 
-def contact_separation(position, pairs, cell_size):
-    """x1 - x2 (M,3) [m] of the grains in contact."""
-    first, second = np.asarray(pairs, dtype=np.intp).reshape(-1, 2).T
-    return nearest_image(position[first] - position[second], cell_size)
-
-
 def contact_pressure(position, pairs, normal_force, cell_size):
     """Sum of (r_i - r_j) f_ij over 3 V [Pa]: the second term of K13 eq 21.
 
     normal_force (M,) [N], positive when repulsive, is all that is needed: sliding pulls at right angles to r_i - r_j
     (A24 eq A8), rolling and twisting exert torques only.
     """
-    distance = np.linalg.norm(contact_separation(position, pairs, cell_size), axis=1)
+    first, second = np.asarray(pairs, dtype=np.intp).reshape(-1, 2).T
+    distance = np.linalg.norm(nearest_image(position[first] - position[second], cell_size), axis=1)
     return float(distance @ np.asarray(normal_force)) / (3.0 * float(np.prod(cell_size)))
 
 
-def cell_velocity(position, velocity, cell_size, rate):
-    """Velocity (N,3) [m/s] of each grain's image in the cell around the origin (K13 eqs 8-11).
-
-    rate (3,) [1/s] of the edges' logarithms, d(ln L)/dt; position and velocity of a grain that stays outside of the
-    cell.
-    """
-    return velocity - rate * cell_size * np.round(position / cell_size)
-
-
 def kinetic_pressure(mass, position, velocity, cell_size, rate):
-    """2 K/(3 V) [Pa] with the translational kinetic energy K of the grains' images in the cell: the first term of K13
-    eq 21.
+    """2 K/(3 V) [Pa] with the translational kinetic energy K of the grains' images in the cell (K13 eqs 8-11): the
+    first term of K13 eq 21.
 
-    It counts the mean flow of the cell too, as K13 does. mass (N,) [kg]; rate as in cell_velocity().
+    It counts the mean flow of the cell too, as K13 does. mass (N,) [kg]; rate (3,) [1/s] of the edges' logarithms.
     """
-    inside = cell_velocity(position, velocity, cell_size, rate)
+    inside = velocity - rate * cell_size * np.round(position / cell_size)
     twice = float(np.asarray(mass) @ np.einsum("ij,ij->i", inside, inside))
     return twice / (3.0 * float(np.prod(cell_size)))
 

@@ -3,10 +3,8 @@
 import json
 import os
 import warnings
-from collections.abc import Iterable, Mapping
 
 import numpy as np
-import pandas
 
 from ..measures.fragments import fragment_labels, heaviest_fragment
 from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
@@ -165,10 +163,7 @@ def table(runs, structure=True):
 
 def measure(runs, of):
     """([(path, of(RunFolder))], [what is wrong with the others, one line each]) of runs as in table()."""
-    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else runs
-    if isinstance(several, (bytes, Mapping, pandas.DataFrame)) or not isinstance(several, Iterable):
-        raise TypeError(f"runs: must be a path, a pattern, a RunFolder or a list of these, not {type(runs).__name__}")
-    several = list(several)
+    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else list(runs)
     opened = {run.path.resolve(): run for run in several if isinstance(run, RunFolder)}
     found = [(run, None) for run in opened.values()]
     for path, problem in run_folders([path for path in several if not isinstance(path, RunFolder)]):
@@ -191,13 +186,14 @@ def row(run, structure=True):
     damaged."""
     numbers = summarise(run)
     del numbers[RUN]
-    numbers["kind"] = run.kind.name
-    fractions = numbers.pop("mass_fractions") or (None, None)
-    numbers.update(largest_fraction=fractions[0], second_fraction=fractions[1])
+    first, second = numbers.pop("mass_fractions") or (None, None)
+    numbers.update(kind=run.kind.name, largest_fraction=first, second_fraction=second)
     numbers.update({at_end(name): change for name, change in _changes(run).items()})
     unlike = run.kind is COLLISION and numbers["d_max"] is None  # d and v have no meaning then
     for name in (series.name for series in (*BONDS, *run.kind.series) if series.name in run.history):
-        numbers[final(name)] = None if unlike and name in ("d", "v") else _at_end(run, name)
+        numbers[final(name)] = None if unlike and name in ("d", "v") else run.history[name][-1]
+    if run.kind is COMPRESSION:  # the pressure oscillates
+        numbers[final("pressure")] = pressure_at_end(run.history, AVERAGED * run.derived["timeUnit"])
     if structure:
         numbers.update(_largest(run.last))
     numeric = {column.name for column in MEASURED if column.kind == "f"}
@@ -270,13 +266,6 @@ def _changes(run):
         return fractions_at(history, history["time"][-1]) or dict.fromkeys(CHANNELS)
     work = largest_work(history)
     return {c: (history[c][-1] - history[c][0]) / work if work > 0 else None for c in CHANNELS}
-
-
-def _at_end(run, name):
-    """Last value of a series; a pressure, which oscillates, is a mean."""
-    if run.kind is COMPRESSION and name == "pressure":
-        return pressure_at_end(run.history, AVERAGED * run.derived["timeUnit"])
-    return run.history[name][-1]
 
 
 def _largest(state):

@@ -73,13 +73,8 @@ def collect(paths, scene, notes, problems):
 
 
 def run_folders(paths):
-    """Run folders at paths, in folders at most LEVELS below them, or of a pattern ("runs/**") in those that it matches.
-
-    Returns
-    -------
-    list
-        (Path, None), each folder once, or (None, what is wrong). Of several paths (runs/*) some may hold no runs.
-    """
+    """[(Path, None)] of the run folders at paths, in folders at most LEVELS below them, or of a pattern ("runs/**") in
+    those that it matches, each once; (None, what is wrong) of others. Of several paths (runs/*) some may hold none."""
     found, known, empty = [], set(), []
     for path in paths:
         pattern = has_magic(str(path)) and not os.path.exists(path)

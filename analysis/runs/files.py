@@ -159,23 +159,8 @@ def array_names(file):
 
 
 def read_arrays(file, names, optional=(), texts=(), sha256=None):
-    """Arrays of an .npz file.
-
-    Parameters
-    ----------
-    file : str or Path
-    names, optional : sequence of str
-        Arrays of numbers that must be there, and that may be.
-    texts : sequence of str
-        Texts that must be there.
-    sha256 : str, optional
-        As of read_bytes().
-
-    Returns
-    -------
-    dict
-        {name: read-only array, or str}
-    """
+    """{name: read-only array, or str} of an .npz file: arrays of numbers that must be there (names), and that may be
+    (optional), and texts that must be there; sha256 as of read_bytes()."""
     with _opened(file, read_bytes(file, sha256)) as archive:
         there = set(_names(archive))
         absent = [name for name in (*names, *texts) if name not in there]

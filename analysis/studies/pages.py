@@ -8,6 +8,7 @@ from html import escape
 
 import pandas
 
+from ..printable import FAILED, complain
 from ..version import version_text
 from .comparison import markdown_table, words_of
 from .study import GALLERY
@@ -29,13 +30,8 @@ def table_of(rows, independent):
 
 
 def filled(file, text, rows, independent):
-    """The text of a README (str) whose table, between its marks, has the rows that it lists made anew.
-
-    Raises
-    ------
-    PageError
-        Where it lacks the second mark, lists a quantity that no row has, or has a number with an error that no row has.
-    """
+    """The text of a README (str) whose table, between its marks, has the rows that it lists made anew. PageError where
+    it lacks the second mark, lists a quantity that no row has, or has a number with an error that no row has."""
     if text.count(START) != 1 or text.count(END) != 1:
         raise PageError(f"{file}: must have the lines {START} and {END} once")
     before, rest = text.split(START)
@@ -60,16 +56,8 @@ def require_numbers(file, text, made):
 
 
 def html_page(study, rows, figures, lines):
-    """One HTML page (str) that can be sent: the table of a study.Study, and its figures, which are inside it.
-
-    Parameters
-    ----------
-    rows : list of comparison.Row
-    figures : list of (str, Path)
-        Caption and PNG file of each.
-    lines : list of str
-        Where the runs come from.
-    """
+    """One HTML page (str) that can be sent: the table of a study.Study of comparison.Rows, its figures [(caption, PNG
+    file)], which are inside it, and lines that say where the runs come from."""
     # slow to load, and the numbers do without it
     import markdown
 
@@ -87,14 +75,14 @@ def html_page(study, rows, figures, lines):
 
 
 def main():
-    """Exit status: 0, or 2 where a number in the pages above all studies is none of theirs, with one line on stderr."""
+    """Exit status: 0, or 2 and one line where a number in the pages above all studies is none of theirs."""
     made = [text for file in sorted(GALLERY.glob("*/comparison.csv")) for text in pandas.read_csv(file).text]
     try:
         for name in ("README.md", "paper.md"):
             require_numbers(GALLERY / name, (GALLERY / name).read_text(encoding="utf-8"), made)
     except PageError as error:
-        print(f"analysis: {error}", file=sys.stderr)
-        return 2
+        complain(error)
+        return FAILED
     return 0
 
 

@@ -60,8 +60,6 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     attributes = found.attrs
     found = found.reset_index(drop=True)  # of tables put together
     found.attrs = attributes
-    if logarithmic not in (None, "x", "y", "xy", ""):
-        raise CannotPlot(f"logarithmic = {logarithmic}: must be x, y, xy or ''")
     seed = "seed" if "seed" in found else FOLDER
     _require_columns(found, what, x, by, where or {}, seed)
     for name, value in (where or {}).items():
@@ -80,9 +78,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         raise CannotPlot(f"{what}: {error}") from None
     if figure is None:
         raise CannotPlot(f"{what}: no run has a value")
-    several = lambda n, what: f"{n} {what}{'s' * (n != 1)}"
-    title = f"{several(len(found), 'run')} of {several(found.pair.nunique(), 'pair')}"
-    title += f", {number - len(found)} left out" if len(found) < number else ""
+    title = f"runs: {len(found)}, pairs: {found.pair.nunique()}"
+    title += f", left out: {number - len(found)}" if len(found) < number else ""
     figure.suptitle("\n".join(textwrap.wrap(title, int(LETTERS * figure.get_figwidth()))), fontsize=10)
     return figure
 

@@ -27,14 +27,8 @@ TITLES = {"dustpy": "DustPy: breaks above 1 m/s", "clamp": "the atlas, beyond it
 
 
 def run(outcomes, with_atlas):
-    """The disk after YEARS. ImportError without DustPy.
-
-    Returns
-    -------
-    dict
-        sigma (Nr, Nm) [g/cm^2 per ln a], outside (Nr, Nm), size (Nr, Nm) [cm], radius (Nr,) [au], report (JSON). With
-        DustPy alone `outside` and `report` are those of the atlas in the same disk.
-    """
+    """The disk after YEARS as a dict: sigma [g/cm^2 per ln a], outside, size [cm] (Nr, Nm), radius (Nr,) [au], report
+    (JSON). With DustPy alone `outside` and `report` are those of the atlas in the same disk."""
     from dustpy import Simulation, constants, std
 
     sim = Simulation(verbosity=0)
