@@ -4,7 +4,7 @@ import numpy as np
 
 
 def numbers(name, value, shape=None, *, positive=False, least=None, most=None, whole=False, gaps=False):
-    """Array of numbers of a given shape.
+    """Array of numbers of a given shape, of float, or of numpy.intp where whole.
 
     Parameters
     ----------
@@ -14,19 +14,12 @@ def numbers(name, value, shape=None, *, positive=False, least=None, most=None, w
         Numbers. Nothing missing (None, NA, masked values), no text, no True or False.
     shape : tuple, optional
         Length of each axis, None for any length; () for one number. Any shape if left out.
-    positive : bool
-        Whether all must be above 0.
+    positive, whole : bool
+        Whether all must be above 0, and whole numbers.
     least, most : float, optional
         Bounds that are allowed themselves.
-    whole : bool
-        Whether all must be whole numbers.
     gaps : bool
         Whether NaN and infinite values are allowed.
-
-    Returns
-    -------
-    numpy.ndarray
-        Of float, or of numpy.intp where whole.
 
     Raises
     ------
@@ -35,8 +28,6 @@ def numbers(name, value, shape=None, *, positive=False, least=None, most=None, w
 
     Examples
     --------
-    >>> numbers("radius", [1, 2.5], (None,), positive=True)
-    array([1. , 2.5])
     >>> numbers("radius", [1, -2.5], (None,), positive=True)
     Traceback (most recent call last):
     ValueError: radius: must be > 0, found -2.5

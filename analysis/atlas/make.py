@@ -67,8 +67,8 @@ two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all piec
 the largest piece;
 where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its \
 own at most) over the smaller one's,
-largest_fragmentation: the largest piece over the larger aggregate; _low, _high: ends of the intervals that hold 90 % of \
-such collisions, for the largest piece of those that leave more than one; inside: 1 within the convex hull of \
+largest_fragmentation: the largest piece over the larger aggregate; _low, _high: ends of the intervals that hold 90 % \
+of such collisions, for the largest piece of those that leave more than one; inside: 1 within the convex hull of \
 the runs
 in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther \
 beyond, where values are those of the

@@ -81,10 +81,6 @@ def take(folder):
                 new.write(json.dumps(asdict(own), indent=2) + "\n")
         except FileExistsError:
             raise InUse("another run has just begun there; must be another folder") from None
-        except OSError:  # the disk is full
-            with suppress(OSError):
-                os.unlink(file)
-            raise
     except BaseException:
         os.close(handle)
         raise

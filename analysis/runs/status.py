@@ -92,7 +92,7 @@ def run_of(folder):
 
 def damage(folder):
     """What is wrong with a run folder's run.json, for which run_of() gives {}; one line."""
-    return (_wrong(read_record, folder) or [f"{os.path.join(folder, RUN_FILE)}: not the record of a run"])[0]
+    return next(iter(_wrong(read_record, folder)), f"{os.path.join(folder, RUN_FILE)}: not the record of a run")
 
 
 def changed(path):

@@ -29,13 +29,10 @@ class Row:
         Not run where its value is NaN.
     paper : float or (float or None, float or None), optional
         The paper's number, or the limits that its words set (None: open); left out where a phrase sets none.
-    printed : str
-        How the paper prints it; '' for a number that is ours alone.
-    source : str
-        Section or equation.
+    printed, source : str
+        How the paper prints it ('' for a number that is ours alone), and its section or equation.
     runs : int, optional
-        Independent runs behind the paper's number, which are taken to scatter as ours do; None: it has no error of its
-        own.
+        Independent runs behind the paper's number, which are taken to scatter as ours do.
     note : str
         Why the two are not quite the same thing.
     """

@@ -31,7 +31,7 @@ def curves(
     y_label="",
     palette=None,
 ):
-    """Figure of estimates against a column of the table of runs, with standard errors.
+    """Figure of estimates against a column of the table of runs, with standard errors; None where no point has a value.
 
     Parameters
     ----------
@@ -55,11 +55,6 @@ def curves(
         '' where points are not joined.
     palette : dict, optional
         {word of `colour`: colour}.
-
-    Returns
-    -------
-    Figure or None
-        None where no point has a value.
     """
     by = [name for name in (panel, colour, x) if name]
     found = {key if isinstance(key, tuple) else (key,): of(own) for key, own in runs.groupby(by if len(by) > 1 else x)}

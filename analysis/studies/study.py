@@ -29,7 +29,6 @@ class Study:
 
     Parameters
     ----------
-    title, question : str
     scene : runs.collect.Scene
         Which runs belong to it, and the columns that tell two runs apart.
     measured : tuple of columns.group()
@@ -41,8 +40,7 @@ class Study:
     figures : callable, optional
         From the same to (name, caption, matplotlib Figure or None) of each figure.
     prepared : callable, optional
-        From the table of runs to one with further columns, which rows and figures get; the column `pair` is added to
-        it first.
+        From the table of runs with the column `pair` to the one that rows and figures get.
     independent : str
         What counts as one in errors, in the plural.
     alike : bool
@@ -83,19 +81,13 @@ def collision_study(title, question, varied, rows, figures=lambda runs: (), pair
     Parameters
     ----------
     varied : tuple of str
-        Parameters that differ from run to run, the seed among them. Run folders that differ in another one are refused
-        together.
+        Parameters that differ from run to run, the seed among them. Runs that differ in others are refused together.
     rows, figures : callable
-        As in Study.
+        As in Study; a row has the parameters varied, `velocity`, columns.OUTCOME and columns.LARGEST.
     pair : tuple of str, optional
         Columns that tell pairs of aggregates apart; without it all of varied but the velocity.
     **values
         Parameters that every run has.
-
-    Returns
-    -------
-    Study
-        A run's row has the parameters varied, `velocity`, and the columns of columns.OUTCOME and columns.LARGEST.
     """
     kinds = {name: "O" if name in PARAMETER_WORDS else "f" for name in varied}
     parameters = [parameter(name, "", "as the table of runs has it", kind) for name, kind in kinds.items()]
@@ -131,9 +123,6 @@ def own_errors(file):
     except (Exception, SystemExit) as error:
         if file is None or type(error).__module__.startswith("analysis."):  # its message is one line
             raise
-        lines = [
-            own.lineno for own in extract_tb(error.__traceback__) if Path(own.filename).resolve() == file.resolve()
-        ]
-        lines += [error.lineno] if isinstance(error, SyntaxError) else []
+        lines = [own.lineno for own in extract_tb(error.__traceback__) if Path(own.filename).name == file.name]
         text, where = " ".join(str(error).split()), f" at line {lines[-1]}" if lines else ""
         raise NoSuchStudy(f"{file}: {type(error).__name__}{where}: {text}; {SAYS}") from None

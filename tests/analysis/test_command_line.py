@@ -1,16 +1,13 @@
 """python3 -m analysis as a user runs it."""
 
 import json
-import os
 import re
-import subprocess
 
 import numpy as np
 import pytest
 from running import PYTHON, TOP, call, read_arrays
 from written_runs import PAIR, PAIR_VELOCITY, change_arrays, seal
 
-import analysis
 from analysis.__main__ import main
 from analysis.runs.format import CHANNELS
 from analysis.theory import collide_pair
@@ -95,30 +92,3 @@ def test_figures_are_written_and_a_place_that_cannot_be_written_is_one_line(anal
     (tmp_path / "taken").write_text("")
     status, _, error = analyse("figures", cluster_folder, "--out", tmp_path / "taken")
     assert status == 2 and error == f"analysis: {tmp_path}/taken: is a file; must be a folder\n"
-
-
-@pytest.fixture(scope="module")
-def installed(tmp_path_factory):
-    """installed(*command) runs in an empty folder with the installed package beside this Python's libraries: what it
-    prints."""
-    target, elsewhere = tmp_path_factory.mktemp("pip"), tmp_path_factory.mktemp("elsewhere")
-    pip = [PYTHON, "-m", "pip", "-q", "install", "--no-deps", f"--target={target}", str(TOP)]
-    patience = {"PIP_RETRIES": "0", "PIP_DEFAULT_TIMEOUT": "15"}
-    done = subprocess.run(pip, capture_output=True, text=True, env=os.environ | patience)
-    if "No module named pip" in done.stderr or "No matching distribution found for hatchling" in done.stderr:
-        pytest.skip("pip is missing, or has no network")
-    assert done.returncode == 0, done.stderr
-    environment = {"PATH": f"{target}/bin:/usr/bin:/bin", "PYTHONPATH": str(target), "HOME": str(elsewhere)}
-
-    def run(*command):
-        done = subprocess.run(command, cwd=elsewhere, env=environment, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stdout.replace(str(target), "TARGET")
-
-    return run
-
-
-def test_what_pip_installs_needs_no_checkout(installed, cluster_folder):
-    assert installed(PYTHON, "-c", "import analysis; print(analysis.__file__)") == "TARGET/analysis/__init__.py\n"
-    assert installed("dust-analysis", "--version") == f"analysis {analysis.__version__}, commit unknown\n"
-    assert "sticking" in installed("dust-analysis", "summary", str(cluster_folder))

@@ -12,11 +12,10 @@ from matplotlib.colors import to_rgb
 from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.__main__ import main
-from analysis.figures.collision import force_kinds, forces_figure, grains_figure, motion_figure
+from analysis.figures.collision import force_kinds, forces_figure, grains_figure
 from analysis.figures.energy import energy_figure
 from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.figures.sphere_raster import paint_spheres
-from analysis.measures.compression import maximum_compression
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLOURS
 from analysis.runs.ledger import fractions
@@ -26,15 +25,6 @@ from analysis.studies.plot import CannotPlot, plot
 @pytest.fixture(scope="module")
 def run(cluster_folder):
     return open_run(cluster_folder)
-
-
-def test_motion_is_in_nanoseconds_grain_radii_and_metres_per_second(run):
-    upper, lower = motion_figure(run).axes
-    time, d = upper.lines[0].get_data()
-    assert time == pytest.approx(run.history["time"] * 1e9) and d == pytest.approx(run.history["d"] / 1e-7)
-    assert lower.lines[0].get_ydata() == pytest.approx(run.history["v"])
-    maximum = maximum_compression(run.history["time"], run.history["d"], run.history["v"])
-    assert upper.texts[0].get_text().startswith(f"$d_{{max}}$ = {maximum.length / 1e-7:.3f}")
 
 
 def test_energy_areas_are_the_fractions(run):

@@ -25,9 +25,8 @@ CM, GRAM, GRAM_PER_CM3 = 100.0, 1000.0, 1e-3  # of one m, kg, kg/m^3
 def use_atlas(
     sim, outcomes, outside="clamp", speeds="maxwell", material="ice", grain_radius=None, fragment_index=False
 ):
-    """Give a DustPy simulation the atlas's probabilities: updaters of sim.dust.p.frag and sim.dust.p.stick.
-
-    The density of the grains is sim.dust.rhos, the filling factor of the aggregates sim.dust.fill.
+    """Give a DustPy simulation the atlas's probabilities: updaters of sim.dust.p.frag and sim.dust.p.stick. The density
+    of the grains is sim.dust.rhos, the filling factor of the aggregates sim.dust.fill.
 
     Parameters
     ----------
@@ -49,12 +48,7 @@ def use_atlas(
     Returns
     -------
     AtlasInDustPy
-
-    Raises
-    ------
-    ValueError
-        For a wrong argument or table. A warning where most collisions at present are outside of the data, as with
-        grains of another size than meant.
+        A warning says where most collisions at present are outside of the data. ValueError for a wrong argument.
     """
     for name, value, choices in (
         ("outside", outside, ("clamp", "dustpy")),
