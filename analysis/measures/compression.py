@@ -27,9 +27,9 @@ class Maximum:
 
 
 def compression_and_velocity(x, x_velocity, aggregate_radius):
-    """Compression length and mutual velocity of two aggregates (A24 eqs 10-13).
-
-    d = 2 R_agg - (x_+ - x_-) and v = -(v_+ - v_-), the means being over grains with x > 0 and x < 0.
+    """Compression length d [m] and mutual velocity v [m/s] of two aggregates (A24 eqs 10-13): d = 2 R_agg - (x_+ - x_-)
+    and v = -(v_+ - v_-), positive while approaching, the means being over grains with x > 0 and x < 0; NaN while a
+    side is empty.
 
     Parameters
     ----------
@@ -37,11 +37,6 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
         Positions [m] and velocities [m/s] along the collision axis from the centre of mass. A grain at 0 is on
         neither side.
     aggregate_radius : float [m]
-
-    Returns
-    -------
-    d, v : float
-        [m] and [m/s], positive while approaching; NaN while a side is empty.
 
     Examples
     --------

@@ -121,30 +121,32 @@ _COUNTED = {"commits": "commit", "machines": "machine", "versions": "versions", 
 def provenance(runs):
     """What made the runs (RunFolder): dict of runs (their number), commits, machines, versions and stepFractions [t0]
     (each {text: number of runs}), steps (their sum, as if there were no shorter ones) and hours (of wall time)."""
-    found = {"runs": len(runs), **{key: Counter() for key in _COUNTED}, "steps": 0, "hours": 0.0}
-    for run in runs:
-        record, hardware = run.record, run.record.get("hardware") or {}
-        commit, *changed = str(record.get("commit", "unknown")).split("-", 1)  # -changed where its files were others
-        found["commits"]["-".join([commit[:12], *changed])] += 1
-        found["machines"][f"{hardware.get('cpu') or 'unknown processor'}, {hardware.get('cores', '?')} cores"] += 1
-        found["versions"][", ".join(f"{name} {text}" for name, text in (record.get("versions") or {}).items())] += 1
-        step, shorter = str(run.parameters.get("stepFraction", "unknown")), run.parameters.get("impactStepFraction")
-        found["stepFractions"][step if shorter is None else f"{step} (impact: {shorter})"] += 1
-        found["steps"] += int(run.derived.get("steps") or 0)
-        found["hours"] += float(record.get("wallTime") or 0.0) / 3600.0
-    return _most_first(found)
+    return joined(map(_origin, runs))
+
+
+def _origin(run):
+    record, hardware = run.record, run.record.get("hardware") or {}
+    commit, *changed = str(record.get("commit", "unknown")).split("-", 1)  # -changed where its files were others
+    step, shorter = str(run.parameters.get("stepFraction", "unknown")), run.parameters.get("impactStepFraction")
+    texts = {
+        "commits": "-".join([commit[:12], *changed]),
+        "machines": f"{hardware.get('cpu') or 'unknown processor'}, {hardware.get('cores', '?')} cores",
+        "versions": ", ".join(f"{name} {text}" for name, text in (record.get("versions") or {}).items()),
+        "stepFractions": step if shorter is None else f"{step} (impact: {shorter})",
+    }
+    spent = {"steps": int(run.derived.get("steps") or 0), "hours": float(record.get("wallTime") or 0.0) / 3600.0}
+    return {"runs": 1, **{key: {text: 1} for key, text in texts.items()}, **spent}
 
 
 def joined(origins):
     """The same of all the runs of several such dicts."""
-    origins = list(origins)
-    counts = {key: sum((Counter(o[key]) for o in origins), Counter()) for key in _COUNTED}
-    return _most_first({**{key: sum(o[key] for o in origins) for key in ("runs", "steps", "hours")}, **counts})
-
-
-def _most_first(found):
-    counts = {key: dict(found[key].most_common()) for key in _COUNTED}
-    return {"runs": found["runs"], **counts, "steps": found["steps"], "hours": round(found["hours"], 2)}
+    counts, sums = {key: Counter() for key in _COUNTED}, Counter()
+    for origin in origins:
+        sums.update({key: origin[key] for key in ("runs", "steps", "hours")})
+        for key, count in counts.items():
+            count.update(origin[key])
+    most_first = {key: dict(count.most_common()) for key, count in counts.items()}
+    return {"runs": sums["runs"], **most_first, "steps": sums["steps"], "hours": round(sums["hours"], 2)}
 
 
 def provenance_lines(origin):

@@ -23,7 +23,7 @@ PIECES = (
 
 
 def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
-    """Table of the pieces of a state: how large each is, and how fluffy.
+    """Table of the pieces of a state, numbered as fragment_labels does: how large each is, and how fluffy.
 
     Parameters
     ----------
@@ -38,8 +38,7 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
     Returns
     -------
     pandas.DataFrame
-        A row a piece, numbered as fragment_labels does: grains, mass_fraction, projectile_fraction, filling_factor,
-        gyration_radius [m], fractal_dimension, coordination. Units and meanings are in .attrs.
+        A row a piece, with the columns PIECES; units and meanings are in .attrs.
 
     Examples
     --------

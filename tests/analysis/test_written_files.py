@@ -11,7 +11,7 @@ from written_runs import flip, unseal
 
 from analysis import table
 from analysis.__main__ import main
-from analysis.runs.files import RunFolderError
+from analysis.runs.files import RunFolderError, write_file
 from analysis.runs.folder import open_run
 from analysis.runs.status import NO_SUMS
 
@@ -72,6 +72,15 @@ def test_formats_before_5_are_read(run, capsys):
 
 
 # ---- what is written ----
+
+
+def test_content_is_on_the_disk_before_it_takes_the_name(tmp_path, monkeypatch):
+    calls = []
+    for name in ("fsync", "replace"):
+        real = getattr(os, name)
+        monkeypatch.setattr(os, name, lambda *given, name=name, real=real: (calls.append(name), real(*given))[1])
+    write_file(tmp_path / "page.html", "new")
+    assert calls == ["fsync", "replace", "fsync"]
 
 
 def test_files_of_others_and_what_is_read_are_not_written_over(own, capsys, monkeypatch):
