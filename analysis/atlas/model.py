@@ -48,8 +48,13 @@ def classifier(strength=STRENGTH, order=ORDER):
 
 
 def best_classifier(points, outcomes):
-    """The classifier() with that one of STRENGTHS which has the least cross-validated logarithmic loss."""
-    score = lambda fit, points, outcomes: -log_loss(chances(fit, points), outcomes)
+    """The classifier() with that one of STRENGTHS which has the least cross-validated logarithmic loss: mean of -ln of
+    the probability of what was observed, which counts as LEAST at least."""
+
+    def score(fit, points, outcomes):
+        observed = chances(fit, points)[outcomes[:, None] == np.array(KINDS)]
+        return np.log(np.maximum(observed, LEAST)).mean()
+
     search = GridSearchCV(classifier(), {"fit__C": STRENGTHS}, scoring=score, cv=folds(len(points)), refit=False)
     return classifier(search.fit(points, np.asarray(outcomes)).best_params_["fit__C"])
 
@@ -59,16 +64,6 @@ def chances(fit, points):
     found = np.zeros((len(points), len(KINDS)))
     found[:, [KINDS.index(kind) for kind in fit.classes_]] = fit.predict_proba(points)
     return found
-
-
-def is_kind(outcomes):
-    """(n, 5): whether each outcome is that one of KINDS."""
-    return np.asarray(outcomes)[:, None] == np.array(KINDS)
-
-
-def log_loss(p, outcomes):
-    """Mean of -ln of the probability of what was observed, which counts as LEAST at least."""
-    return float(-np.log(np.maximum(p[is_kind(outcomes)], LEAST)).mean())
 
 
 def folds(number):
@@ -102,11 +97,8 @@ class Model:
         return Remains(self.runs)
 
     def probabilities(self, points, averaged=False):
-        """Probabilities p (n, 5) of rules.KINDS and half widths (n, 5) of their intervals of LEVEL, None without
-        members."""
+        """Probabilities p (n, 5) of rules.KINDS and half widths (n, 5) of their intervals of LEVEL."""
         fits = np.stack([self._of_fit(fit, points, averaged) for fit in self._fits])
-        if len(fits) == 1:
-            return fits[0], None
         low, high = np.quantile(fits[1:], (0.5 - LEVEL / 2, 0.5 + LEVEL / 2), axis=0)
         own = energy(points)
         never_yet = np.where((own >= ONE_CONTACT) & (own < self.slow.energy), self.slow.most, 0.0)

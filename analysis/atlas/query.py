@@ -36,7 +36,6 @@ def outcome(
     grain_radius=None,
     maxwell=False,
     impact=None,
-    columns=None,
     file=None,
     structure=None,
 ):
@@ -59,8 +58,6 @@ def outcome(
         Whether the velocity is the root mean square of a Maxwell distribution of speeds.
     impact : float or array, optional
         Impact parameter, 0 to 1, over the sum of these radii; averaged, uniform in its square, if left out.
-    columns : list of str, optional
-        These alone, and `inside`.
     file : path, optional
         Another table than those of the atlas.
     structure : {"grown", "close-packed"}, optional
@@ -85,10 +82,7 @@ def outcome(
         raise ValueError(f"file = {file}: must be left out with a structure, which says which of the atlas's files")
     query = coordinates(velocity, projectile, target, filling, material, grain_radius, impact)
     table = _table(file or outcomes_file(structure or GROWN, impact is None), maxwell)
-    needed = columns
-    if columns is not None and "second" in columns:
-        needed = (*columns, "largest")  # which bounds it
-    found, ratio = table.lookup(needed, **query), query["mass_ratio"]
+    found, ratio = table.lookup(**query), query["mass_ratio"]
     for name in set(GAINING) & set(found):
         found[name] = np.asarray(largest_after(found[name], ratio))
     if "second" in found:
@@ -96,7 +90,7 @@ def outcome(
         found["second"] = np.asarray(np.minimum(found["second"] * ratio / (1 + ratio), most))
     for name in {*ERRORS, *INTERVALS} & set(found):
         found[name][found[INSIDE] < MOSTLY] = np.nan
-    return {name: values for name, values in found.items() if columns is None or name in (*columns, INSIDE)}
+    return found
 
 
 def coordinates(velocity, projectile, target, filling, material, grain_radius, impact):
@@ -158,8 +152,7 @@ def in_words(options):
     """Lines (str) for the options of commands.outcome: the query, whether it is within the data, probabilities, what is
     left, and the nearest runs."""
     pair = options.velocity, options.projectile, options.target, options.filling
-    impact = options.impact
-    more = {"material": options.material, "grain_radius": options.grain_radius, "impact": impact}
+    more = {"material": options.material, "grain_radius": options.grain_radius, "impact": options.impact}
     found = outcome(*pair, maxwell=options.maxwell, structure=options.structure, **more)
     answer = {name: float(value) for name, value in found.items()}
     point = pandas.DataFrame([{"impact_square": 0.5} | coordinates(*pair, **more)]).astype(float)
@@ -168,7 +161,7 @@ def in_words(options):
         f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of "
         f"{options.material}, radius {1e6 * radius_of(options.material, options.grain_radius):g} um, "
         f"filling {options.filling:g}, {options.velocity:g} m/s ({point.velocity[0]:.3g} v_break{speeds}), "
-        + ("averaged over impact parameters:" if impact is None else f"b = {impact:g}:")
+        + ("averaged over impact parameters:" if options.impact is None else f"b = {options.impact:g}:")
     )
     known = np.isfinite(answer[ERRORS[0]])
     without = "" if known else "; the answer is that of the nearest data, its error is not known"
@@ -186,7 +179,7 @@ def in_words(options):
         yield f"  {label:<42} {answer[name]:.3g}{interval}"
     if region is not None:
         yield "nearest runs:"
-        for run in region.runs.iloc[region.nearest(point, impact is None)[0]].itertuples():
+        for run in region.runs.iloc[region.nearest(point, options.impact is None)[0]].itertuples():
             yield from _run(run)
 
 

@@ -288,13 +288,12 @@ def read_quantities(file, quantities, file_format, sha256=None):
     expected, sizes = [q for q in quantities if q.since <= file_format], {}
     names, optional = ([q.name for q in expected if q.optional == optional] for optional in (False, True))
     arrays = read_arrays(file, names, optional, sha256=sha256)
-    for quantity in expected:  # the size of each axis, from the first array that has no other
-        if quantity.name in arrays and len(quantity.shape) == 1 and isinstance(quantity.shape[0], str):
+    there = [quantity for quantity in expected if quantity.name in arrays]
+    for quantity in there:  # the size of each axis, from the first array that has no other
+        if len(quantity.shape) == 1 and isinstance(quantity.shape[0], str):
             sizes.setdefault(quantity.shape[0], arrays[quantity.name].size)
-    for quantity in expected:
-        if quantity.name in arrays:
-            _require_shape(file, quantity, arrays[quantity.name], sizes)
-            _require_values(file, quantity, arrays[quantity.name])
+    for quantity in there:
+        _require(file, quantity, arrays[quantity.name], sizes)
     for quantity in quantities:
         if quantity.since > file_format and not quantity.optional:
             arrays[quantity.name] = np.zeros([sizes.get(n, n) for n in quantity.shape])
@@ -302,20 +301,14 @@ def read_quantities(file, quantities, file_format, sha256=None):
     return arrays
 
 
-def _require_shape(file, quantity, array, sizes):
-    name, shape = quantity.name, tuple(sizes.get(n, n) for n in quantity.shape)
-    if not shape and array.size != 1:
-        raise RunFolderError(f"{file}: '{name}' must be one number, its shape is {array.shape}")
-    if shape and array.shape != shape:
+def _require(file, quantity, array, sizes):
+    """RunFolderError unless an array has a quantity's shape and type, and values that it may have; sizes: of axes."""
+    name, shape, (kinds, words) = quantity.name, tuple(sizes.get(n, n) for n in quantity.shape), _TYPES[quantity.kind]
+    if array.shape != shape and not (shape == () and array.size == 1):
         raise RunFolderError(f"{file}: '{name}' has the shape {array.shape}, expected {shape}")
-    kinds, words = _TYPES[quantity.kind]
     if array.dtype.kind not in kinds:
         raise RunFolderError(f"{file}: '{name}' must be {words}, it is {array.dtype}")
-
-
-def _require_values(file, quantity, array):
-    """Raise RunFolderError unless the values of a quantity's array are what they may be."""
-    name, sound = quantity.name, np.abs(array) < LARGEST
+    sound = np.abs(array) < LARGEST
     if quantity.gaps:
         sound |= np.isnan(array)
     if not np.all(sound):
@@ -323,7 +316,7 @@ def _require_values(file, quantity, array):
         what = f"beyond {LARGEST:g}" if np.isfinite(array[~sound]).all() else "not finite"
         raise RunFolderError(f"{file}: '{name}' holds a value that is {what}{where}")
     if quantity.positive and not np.all(array > 0):
-        at = int(np.argmin(np.asarray(array) > 0))
+        at = int(np.argmin(array > 0))
         raise RunFolderError(f"{file}: '{name}' is {array[at]:g} at index {at}; must be > 0")
 
 
