@@ -18,8 +18,6 @@ def add_parsers(commands):
     parser = commands.add_parser(
         "study",
         help="figures and numbers of a study from many runs, beside the paper's; without a name: list the studies",
-        description="Measure and draw what a study does from runs of its scene, and print its numbers beside the "
-        "paper's. Without a name: list the studies.",
     )
     parser.add_argument("name", nargs="?", metavar="NAME", help="a study, or a file NAME.py of one's own")
     parser.add_argument(

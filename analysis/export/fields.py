@@ -100,11 +100,6 @@ def grain_fields(exported):
     return {f.name: f.values(exported) for f in GRAINS if f.name != "mass" or exported.density is not None}
 
 
-def contact_fields(exported):
-    """{name: array} of the contacts."""
-    return {f.name: f.values(exported) for f in CONTACTS}
-
-
 def exported_states(run):
     """An Exported for each state of a RunFolder, one at a time; RunFolderError when there is none."""
     run.start  # noqa: B018 (raises)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..progress import progress
 from ..runs.files import make_folder, replacing, write_file
-from .fields import contact_fields, exported_states, grain_fields
+from .fields import CONTACTS, exported_states, grain_fields
 
 _VTK_TYPES = {"f": ("Float64", "<f8"), "i": ("Int64", "<i8"), "u": ("Int64", "<i8"), "b": ("Int64", "<i8")}
 _XYZ_TYPES = {"f": "R", "i": "I", "u": "I"}
@@ -38,12 +38,14 @@ def write_vtk(run, folder):
         names.append(f"state_{number:06d}")
         times.append(exported.state.time)
         (folder / names[-1]).mkdir(parents=True, exist_ok=True)
-        blocks = {part: f"{names[-1]}/{part}.vtp" for part in ("grains", "contacts")}
-        write_file(folder / blocks["grains"], _grains(exported))
-        write_file(folder / blocks["contacts"], _contacts(exported))
-        write_file(folder / f"{names[-1]}.vtm", _multi_block(blocks))
+        write_file(folder / names[-1] / "grains.vtp", _grains(exported))
+        write_file(folder / names[-1] / "contacts.vtp", _contacts(exported))
+        parts = [{"index": k, "name": p, "file": f"{names[-1]}/{p}.vtp"} for k, p in enumerate(("grains", "contacts"))]
+        write_file(folder / f"{names[-1]}.vtm", _data_sets("vtkMultiBlockDataSet", parts))
     series = folder / "run.pvd"
-    write_file(series, _collection([f"{name}.vtm" for name in names], times))
+    states = zip(names, map(float, times))
+    entries = [{"timestep": time, "group": "", "part": 0, "file": f"{name}.vtm"} for name, time in states]
+    write_file(series, _data_sets("Collection", entries))
     return series
 
 
@@ -61,7 +63,7 @@ def _contacts(exported):
     lines = np.arange(len(points)).reshape(-1, 2)
     if not len(lines):  # a point that no line has: OVITO takes a file of no point for one of no particle
         points = exported.state.position[:1]
-    return poly_data(points, {}, lines, contact_fields(exported))
+    return poly_data(points, {}, lines, {field.name: field.values(exported) for field in CONTACTS})
 
 
 def poly_data(points, point_fields, lines=None, cell_fields=None, field_data=None):
@@ -90,22 +92,10 @@ def poly_data(points, point_fields, lines=None, cell_fields=None, field_data=Non
     return _file("PolyData", "\n".join(["<PolyData>", *body, "</PolyData>"]))
 
 
-def _multi_block(blocks):
-    """Text of a .vtm file: blocks {name: file}, files relative to its folder."""
-    sets = [
-        f'<DataSet index="{index}" name={quoteattr(name)} file={quoteattr(file)}/>'
-        for index, (name, file) in enumerate(blocks.items())
-    ]
-    return _file("vtkMultiBlockDataSet", "\n".join(["<vtkMultiBlockDataSet>", *sets, "</vtkMultiBlockDataSet>"]))
-
-
-def _collection(files, times):
-    """Text of a .pvd file: a file for each time."""
-    sets = [
-        f'<DataSet timestep="{time!r}" group="" part="0" file={quoteattr(file)}/>'
-        for file, time in zip(files, map(float, times), strict=True)
-    ]
-    return _file("Collection", "\n".join(["<Collection>", *sets, "</Collection>"]))
+def _data_sets(kind, of_each):
+    """Text of a file that lists others: attributes {name: value} of each, files relative to its folder."""
+    lines = (" ".join(f"{name}={quoteattr(str(value))}" for name, value in own.items()) for own in of_each)
+    return _file(kind, "\n".join([f"<{kind}>", *(f"<DataSet {line}/>" for line in lines), f"</{kind}>"]))
 
 
 def _file(kind, body):

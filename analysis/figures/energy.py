@@ -35,7 +35,10 @@ def energy_figure(run):
     values = np.array(list(parts.values()))
     top, bottom = np.maximum(values, 0.0).sum(axis=0).max(), np.minimum(values, 0.0).sum(axis=0).min()
     upper.set_ylim(bottom - 0.03 * (top - bottom) * (bottom < 0), top + 0.03 * (top - bottom))
-    _name_areas(upper)
+    handles, labels = upper.get_legend_handles_labels()  # beside the plot, in the order of the stack from the top
+    title = "change since the start, at the end\n(kinetic: what is left)"
+    place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "frameon": False}
+    upper.legend(handles[::-1], labels[::-1], title=title, title_fontsize=10, alignment="left", **place)
     _draw_error(lower, time, run.history)
     lower.set_xlim(time[0], time[-1] if time.size > 1 else time[0] + 1.0)
     return figure
@@ -51,21 +54,6 @@ def _stack(axes, time, parts):
             area = {"color": COLOURS[name], "linewidth": 0, "label": label if sign > 0 else None}
             axes.fill_between(time, base, base + height, **area)
             base = base + height
-
-
-def _name_areas(axes):
-    """A legend beside the plot, in the order of the stack from the top."""
-    handles, labels = axes.get_legend_handles_labels()
-    axes.legend(
-        handles[::-1],
-        labels[::-1],
-        loc="upper left",
-        bbox_to_anchor=(1.01, 1.0),
-        frameon=False,
-        title="change since the start, at the end\n(kinetic: what is left)",
-        title_fontsize=10,
-        alignment="left",
-    )
 
 
 def _draw_error(axes, time, history):

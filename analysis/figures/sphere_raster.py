@@ -15,9 +15,15 @@ def paint_spheres(position, radius, colour, window, pixel, fading=4.0):
     largest."""
     x0, x1, y0, y1 = window
     width, height = max(1, int(round((x1 - x0) / pixel))), max(1, int(round((y1 - y0) / pixel)))
-    depth, owner = _depth_and_owner(position, radius, (x0, y0), (width, height), pixel)
-    image = np.empty((height * width, 3))
-    image[:] = 1.0
+    depth, owner = np.full(width * height, -np.inf), np.full(width * height, -1, dtype=np.intp)
+    if len(radius):
+        spheres = position, radius, (x0, y0), (width, height), pixel
+        for _, pixels, z in _covered(*spheres):
+            np.maximum.at(depth, pixels, z)
+        for rows, pixels, z in _covered(*spheres):
+            front = z == depth[pixels]
+            owner[pixels[front]] = rows[front]
+    image = np.ones((height * width, 3))
     hit = np.flatnonzero(owner >= 0)
     if hit.size:
         image[hit] = _shade(hit, depth[hit], owner[hit], position, radius, colour, (x0, y0), width, pixel, fading)
@@ -49,18 +55,6 @@ def _covered(position, radius, origin, size, pixel):
         columns, rows = (np.arange(int(max(0, a)), int(min(n, b))) for a, b, n in zip(low, high, size))
         c, r = np.tile(columns, rows.size), np.repeat(rows, columns.size)
         yield covered(np.full(c.size, sphere), c, r)
-
-
-def _depth_and_owner(position, radius, origin, size, pixel):
-    depth = np.full(size[0] * size[1], -np.inf)
-    owner = np.full(size[0] * size[1], -1, dtype=np.intp)
-    if len(radius):
-        for _, pixels, z in _covered(position, radius, origin, size, pixel):
-            np.maximum.at(depth, pixels, z)
-        for rows, pixels, z in _covered(position, radius, origin, size, pixel):
-            front = z == depth[pixels]
-            owner[pixels[front]] = rows[front]
-    return depth, owner
 
 
 def _shade(hit, depth, owner, position, radius, colour, origin, width, pixel, fading):

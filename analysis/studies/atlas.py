@@ -30,7 +30,7 @@ from ..runs.measured import UNLIKE
 from ..theory import ICE
 from .columns import NotMeasured, group
 from .comparison import Row
-from .estimates import Estimate, estimate, fraction
+from .estimates import Estimate, ending, estimate, fraction
 from .figures import COLOURS, plain_ticks, points
 from .study import Study
 
@@ -73,11 +73,6 @@ def less(one, other):
     """Estimate of one less another, of different runs."""
     error = None if one.error is None or other.error is None else hypot(one.error, other.error)
     return Estimate(one.value - other.value, error, one.pairs + other.pairs)
-
-
-def ending(runs, *outcomes):
-    """Estimate of the fraction that ends so."""
-    return fraction(runs, runs.outcome.isin(outcomes), runs.outcome == UNDECIDED)
 
 
 def bouncing_exponent(runs):

@@ -100,15 +100,12 @@ def _measure(study, runs, rows, found):
             rows[key][FOLDER] = rows[key][FOLDER] or str(run.path)
             found.notes.append(f"{run.path}: {same} {rows[key][RUN]} of a table, counted once")
         elif key in measured:
-            short, measured[key] = sorted([(run, values), measured[key]], key=_end)
+            by_length = sorted([(run, values), measured[key]], key=lambda own: own[0].history["time"][-1])
+            short, measured[key] = by_length
             found.notes.append(f"{short[0].path}: {same} {measured[key][0].path}, which is as long or longer, left out")
         else:
             measured[key] = run, values
     return list(measured.values())
-
-
-def _end(measured):
-    return float(measured[0].history["time"][-1])
 
 
 def _key(study, values):
