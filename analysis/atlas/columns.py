@@ -223,7 +223,7 @@ def _lost_in_compression(run):
 
 
 def _outcome(run, row):
-    """The outcome by the rules; UNDECIDED where pieces may still meet or break, or the aggregates still rebound."""
+    """By the rules; UNDECIDED where pieces may still meet or break, or the aggregates still rebound."""
     if not met(run):
         return UNDECIDED if "firstTouch" in run.derived else NEVER_MET
     kind, touch, end = str(outcome(row)), time_of_touch(run), run.last.time

@@ -50,6 +50,8 @@ VELOCITIES = np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.
 BEYOND_SIZES = np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])
 BEYOND_RATIOS = np.append(64.0 ** np.arange(-4, -1), RATIOS)
 
+NO_SKLEARN = "scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])"
+
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
 Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff \
 of the repository.
@@ -165,7 +167,7 @@ def main(folder=FOLDER):
     except OSError as error:
         complain(f"{error.filename or folder}: {error.strerror}")
     except ModuleNotFoundError:
-        complain("scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])")
+        complain(NO_SKLEARN)
     except (TableError, ValueError) as error:
         complain(error)
     else:

@@ -19,8 +19,6 @@ from .fields import exported_states
 
 ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
 AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
-FRAMES_PER_SECOND = 10
-WIDTH = 960  # pixels
 _NARROWEST = 480  # pixels, for the legend
 _TALLEST = 9 / 8  # over the width
 _FASTEST_GIF = 50  # frames a second that all programs show
@@ -35,7 +33,7 @@ class NoFilm(Exception):
     """The film could not be encoded; the message is one line."""
 
 
-def write_film(run, file, frames_per_second=FRAMES_PER_SECOND, width=WIDTH, along="z", colour="aggregate"):
+def write_film(run, file, frames_per_second=10, width=960, along="z", colour="aggregate"):
     """Write the states of a RunFolder as a film, viewed from far along an axis; the file appears when it is complete.
 
     file : Path with one of ENDINGS, H.264 in that container, or a .gif that repeats. width : pixels; less where the
@@ -126,7 +124,7 @@ def _draw_length(canvas, pixel, right, y):
 
 
 def _rgb(colour):
-    return tuple(int(round(255 * value)) for value in colour)
+    return tuple(round(255 * value) for value in colour)
 
 
 @cache

@@ -56,8 +56,7 @@ def running(folder, run, lock):
     written.
 
     run: its run.json (dict); lock: its lock.Lock."""
-    progress = progress_of(folder, run)
-    where = {"host": lock.host, "note": "" if lock.is_here else str(lock)}
+    progress, where = progress_of(folder, run), {"host": lock.host, "note": "" if lock.is_here else str(lock)}
     begun, written = (changed(os.path.join(folder, name)) for name in (RUN_FILE, HISTORY_FILE))
     if begun < 0:
         return State(RUNNING, progress, **where)

@@ -61,7 +61,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     found = found.reset_index(drop=True)  # of tables put together
     found.attrs = attributes
     seed = "seed" if "seed" in found else FOLDER
-    _require_columns(found, what, x, by, where or {}, seed)
+    _require_columns(found, what, x, by, where or {})
     for name, value in (where or {}).items():
         found = _only(found, name, value)
     number, found = len(found), _complete(found, what, x, by)
@@ -107,17 +107,13 @@ def _draw(found, what, x, by, logarithmic):
     return curves(found, of, x, limits=limits, y_label=label, **how)
 
 
-def _require_columns(found, what, x, by, where, seed):
+def _require_columns(found, what, x, by, where):
     if by == x:
         raise CannotPlot(f"by = {by}: must be another column than x")
     for name in (what, x, *([by] if by else []), *where):
         if name not in found and not (name == what and what in WHATS):
             names = (*WHATS, *found) if name == what else found
             raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
-    own = [seed, "outcome", "ended", "kind"] + ["maximum_inside"] * bool(OF_MAXIMUM & {what, x, by})
-    missing = [name for name in dict.fromkeys((*WHATS.get(what, ()), *own)) if name not in found]
-    if missing:
-        raise CannotPlot(f"table of runs: lacks {', '.join(missing)}; must be as analysis.table() gives it")
 
 
 def _only(found, name, value):

@@ -91,12 +91,10 @@ def main(folder):
     if str(arrays.pop("table")) != table:
         print(f"{kept}: of another table than {outcomes}; must be removed to be made again", file=sys.stderr)
         return 2
-    runs = {name: {} for name in TITLES}
-    for key, value in arrays.items():
-        name, _, what = key.partition(" ")
-        runs[name][what] = value
-    for name, values in runs.items():
-        print(name, values["report"])
+    parts = ("sigma", "outside", "size", "radius", "report")
+    runs = {name: {part: arrays[f"{name} {part}"] for part in parts} for name in TITLES}
+    for name, own in runs.items():
+        print(name, own["report"])
     save_small(figure(runs), folder / "disk.png")
     return 0
 
