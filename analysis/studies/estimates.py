@@ -82,8 +82,8 @@ def mean(values):
 
 
 def beside(statistic, one, other, of=np.subtract):
-    """Estimate of of(statistic(one), statistic(other)) for two tables of runs, a difference or a ratio: of the pairs
-    that are in both, or of all where none is."""
+    """Estimate of of(statistic(one), statistic(other)), a difference or a ratio: of the pairs that are in both tables
+    of runs, or of all where none is."""
     shared = set(one["pair"]) & set(other["pair"])
     one, other = (own[own["pair"].isin(shared)] if shared else own for own in (one, other))
     both = pandas.concat([one.assign(first=True), other.assign(first=False)], ignore_index=True)

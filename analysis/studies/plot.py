@@ -1,7 +1,5 @@
 """A column of a table of runs against another, with error bars over pairs of aggregates."""
 
-import textwrap
-
 import pandas
 
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
@@ -16,7 +14,6 @@ LARGEST = "largest_fraction"
 WHATS = {"sticking": ["outcome"], "largest": [LARGEST], "energy": [at_end(channel) for channel in CHANNELS]}
 FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggregates
 OF_MAXIMUM = {"d_max", "t_max"}
-LETTERS = 13  # of a title, an inch of the figure
 
 
 class CannotPlot(ValueError):
@@ -80,7 +77,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         raise CannotPlot(f"{what}: no run has a value")
     title = f"runs: {len(found)}, pairs: {found.pair.nunique()}"
     title += f", left out: {number - len(found)}" if len(found) < number else ""
-    figure.suptitle("\n".join(textwrap.wrap(title, int(LETTERS * figure.get_figwidth()))), fontsize=10)
+    figure.suptitle(title, fontsize=10)
     return figure
 
 
