@@ -303,7 +303,7 @@ $(STUDIES:%=gallery-%): gallery-%:
 	@$(MAKE) --no-print-directory gallery
 
 gallery:
-	@$(PYTHON) -m analysis.studies.pages
+	@$(PYTHON) -m pytest -p no:cacheprovider -q tests/analysis/test_studies.py -k "gallery or pages"
 
 # Some ten minutes of quiet cores (BENCH=--quick: three); the papers' scenes an hour the first time, when they are made.
 bench-peers: peers

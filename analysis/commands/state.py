@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import asdict
-from pathlib import Path
 
 from ..printable import printable
 from . import FAILED, RUNS, complain
@@ -54,11 +53,10 @@ def status(options):
 def verify(options):
     """Exit status: 0, or 2 when something differs from its sum, a run has lost its sums, or no path holds a run."""
     from ..progress import line_beside_bars, progress
-    from ..runs.collect import LOST, is_lost, run_folders
+    from ..runs.collect import run_folders
     from ..runs.status import verify_run
 
     found, differs = run_folders(options.runs), False
-    found += [(None, f"{path}: {LOST}") for path in map(Path, options.runs) if is_lost(path)]
     for path, problem in progress(found, "verifying"):
         problems, notes = ([problem], []) if problem else verify_run(path)
         differs |= bool(problems)

@@ -8,11 +8,10 @@ from pathlib import Path
 
 from .files import RunFolderError
 from .folder import open_run
-from .format import COLLISION, ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER, same
+from .format import COLLISION, ENDED_FILE, RUN_FILE, same
 from .table import ENDING
 
 MARKS = RUN_FILE, ENDED_FILE  # of a run folder
-LOST = f"holds what a run has left, and neither {' nor '.join(MARKS)}; must have both"
 LEVELS = 2
 
 
@@ -98,19 +97,10 @@ def run_folders(paths):
 
 def _inside(path):
     """Run folders at a path: itself, or those below it, sorted; one that has ended is one without its run.json, too."""
-    if _is_marked(path):
+    if any((path / mark).exists() for mark in MARKS):
         return [path]
     levels = ("*/" * level for level in range(1, LEVELS + 1))
     return sorted({file.parent for level in levels for mark in MARKS for file in path.glob(level + mark)})
-
-
-def _is_marked(path):
-    return any((path / mark).exists() for mark in MARKS)
-
-
-def is_lost(path):
-    """Whether a folder holds what a run has left, and neither of MARKS."""
-    return any((path / left).exists() for left in (HISTORY_FILE, STATES_FOLDER)) and not _is_marked(path)
 
 
 # Where runs come from.

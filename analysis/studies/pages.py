@@ -3,15 +3,10 @@ page of a user's own runs."""
 
 import base64
 import re
-import sys
 from html import escape
 
-import pandas
-
-from ..printable import FAILED, complain
 from ..version import version_text
 from .comparison import markdown_table, words_of
-from .study import GALLERY
 
 START, END = "<!-- table: made by `make gallery` -->", "<!-- end of the table -->"
 NUMBER = re.compile(r"\d+(?:\.\d+)? ± \d+(?:\.\d+)?")
@@ -72,19 +67,3 @@ def html_page(study, rows, figures, lines):
         f"<style>\n{STYLE}\n</style></head>\n<body>\n<h1>{title}</h1>\n{body}\n"
         f"<p>Version {version_text()}.</p>\n</body>\n</html>\n"
     )
-
-
-def main():
-    """Exit status: 0, or 2 and one line where a number in the pages above all studies is none of theirs."""
-    made = [text for file in sorted(GALLERY.glob("*/comparison.csv")) for text in pandas.read_csv(file).text]
-    try:
-        for name in ("README.md", "paper.md"):
-            require_numbers(GALLERY / name, (GALLERY / name).read_text(encoding="utf-8"), made)
-    except PageError as error:
-        complain(error)
-        return FAILED
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
