@@ -26,11 +26,12 @@ def commit():
         return installed.read_text(encoding="utf-8").strip()
     if not (_TOP / ".git").exists():
         return "unknown"
-    head = _git("rev-parse", "HEAD")
-    if head is None or not head.stdout.strip():
-        return "unknown"
-    changed = _git("diff", "--quiet", "HEAD", "--", *_PARTS).returncode != 0
-    return head.stdout.strip() + ("-changed" if changed else "")
+    try:
+        head = _git("rev-parse", "HEAD").stdout.strip()
+        changed = _git("diff", "--quiet", "HEAD", "--", *_PARTS).returncode != 0
+    except OSError:  # without git
+        head = ""
+    return head + ("-changed" if changed else "") if head else "unknown"
 
 
 def version_text():
@@ -39,7 +40,4 @@ def version_text():
 
 
 def _git(*arguments):
-    try:
-        return subprocess.run(["git", "-C", str(_TOP), *arguments], capture_output=True, text=True)
-    except OSError:
-        return None
+    return subprocess.run(["git", "-C", str(_TOP), *arguments], capture_output=True, text=True)

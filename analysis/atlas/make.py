@@ -113,15 +113,13 @@ def outcome_axes(structure, averaged):
 def outcome_grid(model, structure, averaged, version):
     """OutcomeTable of a model.Model of a structure, averaged over impact parameters, or at each one with INTERVALS.
 
-    Outside of the data a node has the values of the nearest one inside. ValueError where no node is inside.
+    Outside of the data a node has the values of the nearest one inside.
     """
     axes, columns = outcome_axes(structure, averaged), COLUMNS if averaged else (*COLUMNS, *INTERVALS)
     mesh = np.meshgrid(*(axis.nodes for axis in axes), indexing="ij")  # the last axis is the fastest
     points = pandas.DataFrame({"impact_square": 0.5} | {a.name: values.ravel() for a, values in zip(axes, mesh)})
     region = Region(model.runs)
     inside = region.beyond(points) <= MARGIN
-    if not inside.any():
-        raise ValueError(f"{len(model.runs)} runs: no node of the grid is within them; must be more")
     own = points[inside]
     chances, widths = model.probabilities(own, averaged)
     found = model.remains.means(own, chances, averaged)

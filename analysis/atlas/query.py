@@ -37,7 +37,7 @@ def outcome(
     maxwell=False,
     impact=None,
     file=None,
-    structure=None,
+    structure=GROWN,
 ):
     """What becomes of collisions of two aggregates, from the atlas's tables of outcomes.
 
@@ -60,8 +60,8 @@ def outcome(
         Impact parameter, 0 to 1, over the sum of these radii; averaged, uniform in its square, if left out.
     file : path, optional
         Another table than those of the atlas.
-    structure : {"grown", "close-packed"}, optional
-        Which of the atlas's tables: grown (the default) by hits of grains and clusters, or compressed; or close-packed.
+    structure : {"grown", "close-packed"}
+        Which of the atlas's tables: grown by hits of grains and clusters, or compressed; or close-packed.
 
     Returns
     -------
@@ -76,12 +76,10 @@ def outcome(
     ValueError
         In one line.
     """
-    if structure not in (None, *STRUCTURES):
+    if structure not in STRUCTURES:
         raise ValueError(f"structure = {structure}: must be {' or '.join(STRUCTURES)}")
-    if file and structure:
-        raise ValueError(f"file = {file}: must be left out with a structure, which says which of the atlas's files")
     query = coordinates(velocity, projectile, target, filling, material, grain_radius, impact)
-    table = _table(file or outcomes_file(structure or GROWN, impact is None), maxwell)
+    table = _table(file or outcomes_file(structure, impact is None), maxwell)
     found, ratio = table.lookup(**query), query["mass_ratio"]
     for name in set(GAINING) & set(found):
         found[name] = np.asarray(largest_after(found[name], ratio))

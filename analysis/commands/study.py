@@ -107,9 +107,8 @@ def _text(kind, study, found, rows):
         return f"# {study.title}\n\n{study.question}\n\n{table_of(rows, study.independent)}"
     if kind == "json":
         records = json.loads(of_table(rows).to_json(orient="records", double_precision=15))
-        return json.dumps(
-            {"study": study.name, "runs": len(found.table), "rows": records}, indent=1, ensure_ascii=False
-        )
+        answer = {"study": study.name, "runs": len(found.table), "rows": records}
+        return json.dumps(answer, indent=1, ensure_ascii=False)
     return f"{text_table(rows)}\n{counted(rows)}"
 
 
@@ -150,9 +149,9 @@ def _draw(study, runs, folder, readme):
     with own_errors(study.file):
         for name, caption, figure in progress(study.figures(runs), "drawing"):
             file = folder / f"{name}.png"
-            if figure is None:
-                file.unlink(missing_ok=True)  # of other runs
-            elif readme is None or file.name in readme:
+            if figure is None and file.exists():
+                complain(f"{file}: is of other runs; these have nothing to draw there")
+            elif figure is not None and (readme is None or file.name in readme):
                 save_small(figure, file)
                 drawn.append((caption, file))
     return drawn

@@ -77,20 +77,18 @@ def legend(axes, **options):
 
 def run_title(run, addition=None):
     """Short description of a run from its parameters, as far as they are known, with an addition."""
-    p = run.parameters
-    known = [
-        ("filling", "filling {}"),
-        ("radius", "aggregate radius {} $r$"),
-        ("grains", "{} grains per aggregate"),
-        ("velocity", "{} m/s"),
-        ("impact", "impact {}"),
-    ]
+    known = {
+        "filling": "filling {}",
+        "radius": "aggregate radius {} $r$",
+        "grains": "{} grains per aggregate",
+        "velocity": "{} m/s",
+        "impact": "impact {}",
+    }
     parts = []
-    for key, text in known:
-        value = p.get(key)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or (key == "impact" and not value):
-            continue
-        parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
+    for name, text in known.items():
+        value = run.parameters.get(name)
+        if isinstance(value, (int, float)) and (value or name != "impact"):
+            parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
     return ", ".join(parts + [addition] * bool(addition))
 
 

@@ -4,8 +4,7 @@ delta is the compression length, R* = R_eff/2 the reduced radius, rho the densit
 E* the reduced Young's modulus, delta_c the compression at yield. All integrals of the model are closed, and are used
 in that form; they scale as delta ~ R* and time ~ R*/v.
 
-Checked while writing: B15 and B19 are what B13 makes of B14 and B16, and B23 what it makes of B21, B22; the force is
-continuous at delta_c and at delta_max; eqs 30-33 are the limits of eqs 27-29. Three things to know:
+Three things to know:
 
 - eq 18 prints delta_offset = c2 r/(2 - c1/2). Eqs 14, 15, 17 and 19 give c2 r/(2 - c1), and only that gives
   the printed 0.271 r (the printed form gives 0.267 r). studies.elastoplastic uses that.

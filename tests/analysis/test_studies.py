@@ -29,6 +29,8 @@ def test_the_documented_study_runs(own, capsys):
     assert {file.name for file in (own / "out").iterdir()} == {"comparison.csv", "runs.csv", "sticking.png"}
     table = pandas.read_csv(own / "out" / "comparison.csv").set_index("quantity")
     assert table.ours[STICKS.format(3)] == 0.8 and len(table) == len(found)
+    assert study(own, own / "runs" / "open", "--figures", own / "out") == 0
+    assert "sticking.png: is of other runs" in capsys.readouterr().err
 
 
 def test_runs_that_differ_are_refused_unless_the_study_names_it(own, capsys):
