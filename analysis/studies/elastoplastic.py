@@ -301,9 +301,8 @@ def _new(runs, plain):
     """What comes back, where thin places are, and pairs with one thing changed."""
     for filling in PRINTED:
         own, what = where(plain, filling=filling, velocity=VELOCITY), f"φ = {filling}"
-        returned = estimate(mean("returned"), where(own, radius=80))
+        returned, zones = estimate(mean("returned"), where(own, radius=80)), estimate(zone_correlation, own)
         yield Row(f"returned when the halves part fastest, R = 80 r, {what} [K(0)]", returned)
-        zones = estimate(zone_correlation, own)
         yield Row(f"correlation of d_max and the filling of the zones that meet, {what}", zones)
     for key, own in runs[runs.changed].groupby([*UNCHANGED, "filling", "radius", "velocity"]):
         *values, filling, radius, v = key
