@@ -18,7 +18,6 @@ for the end, whose hash is of all bits of the grains' motion: equal hashes are e
   domains=0       parts that the grains are divided into; 0: by their number
   instructions=   avx512, avx2, portable; empty: the best that this machine has
   together=50     small steps in one call of the engine, as subSteps of JKRWadaEngine
-  warm=0          small steps before the first measurement
   out=            file for the scene at the end
 )";
 
@@ -42,7 +41,7 @@ std::vector<long> numbers(const Settings& settings, const std::string& name, lon
 Settings settingsOf(int count, char** arguments)
 {
 	Settings settings { { "scene", "" }, { "steps", "500" }, { "threads", "1" }, { "domains", "0" }, { "instructions", "" },
-		{ "together", "50" }, { "warm", "0" }, { "out", "" } };
+		{ "together", "50" }, { "out", "" } };
 	for (int k = 1; k < count; ++k) {
 		const std::string argument = k == 1 ? "scene=" + std::string(arguments[k]) : arguments[k];
 		const std::size_t equals = argument.find('=');
@@ -74,7 +73,6 @@ void runScene(const Settings& settings)
 	const int domains = int(numbers(settings, "domains", 0)[0]);
 	harness::Run run(harness::readScene(settings.at("scene")), domains, int(threads[0]), settings.at("instructions"));
 	const double energy = run.totalEnergy(), kinetic = run.kineticEnergy();
-	run.run(numbers(settings, "warm", 0)[0], together);
 	for (const long each : threads) {
 		run.dynamics().setThreads(int(each));
 		measure(run, steps, together);
