@@ -8,32 +8,28 @@ Leaves the page in build/bench/GROUP.txt, the measurements in build/bench/GROUP.
 """
 
 import argparse
+import os
 import sys
 import tempfile
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 
-from measured_on import TOP, fraction_of_others, machine
-
-sys.path.insert(0, str(TOP))
 import codes
 import measured_scenes
-import moments
 import numpy as np
 import pandas as pd
-import peers
 import scene_file
 
 from analysis import open_run
 from analysis.progress import progress
 from yade_scripts import collide
 
-OUT = TOP / "build/bench"
+OUT = codes.TOP / "build/bench"
 HEAD = """{group}: contact updates a second, {cpu}, {cores} cores, commit {commit}
 
 A contact update is one step of one touching contact; M/s: million a second, ms: of a small step, one thread and two.
 All codes take turns in {rounds} rounds; medians, and of engine / code the least and most of the rounds.
-The engine runs in YADE, {together} small steps in an O.step. Other programs took up to {others:.0%} of the machine.
+The engine runs in YADE, {together} small steps in an O.step. The machine's load average before: {load:.1f}.
 """
 GRAIN_RADIUS = 1e-7  # m
 FITTED = (0.02, 0.2)  # t0, between which the order of convergence is fitted
@@ -93,11 +89,13 @@ def measure(scene, moment, start, path, how):
         turns = [(code, threads) for code in here for threads in codes.threads_of(code)]
         for turn in range(how.rounds):
             for code, threads in progress(turns, f"{scene.title}, {moment}: round {turn + 1} of {how.rounds}"):
-                if code in missing or (turn >= how.peer_rounds and not codes.CODES[code].law):
+                if code in missing or (turn >= how.peer_rounds and codes.CODES[code].program):
                     continue
                 try:
                     answer = opened[code].measure(threads, how.seconds, most)
-                except peers.PeerFailed as error:
+                except codes.CodeFailed as error:
+                    if not codes.CODES[code].program:
+                        raise
                     missing[code] = f"failed: {' '.join(str(error).split())[:200]}"
                     continue
                 rows.append({"moment": moment, "code": code, "threads": threads, "round": turn, **answer})
@@ -105,19 +103,17 @@ def measure(scene, moment, start, path, how):
 
 
 def measured(scenes, how):
-    """(DataFrame, a row a measurement; {scene: Start}; {code: reason}; fraction of the machine that others took)."""
-    rows, starts, missing, others = [], {}, {}, 0.0
+    """(DataFrame, a row a measurement; {scene: Start}; {code: reason}; the machine's load before)."""
+    rows, starts, missing, load = [], {}, {}, os.getloadavg()[0]
     for name, scene in scenes.items():
-        starts[name] = moments.make(name, scene, say=print)
-        for moment in scene.moments:
-            others = max(others, fraction_of_others())
-            path = moments.path_of(name, moment, scene)
+        starts[name], paths = measured_scenes.make(name, scene)
+        for moment, path in paths.items():
             found, without = measure(scene, moment, starts[name], path, how)
             rows += [{"scene": name, **row} for row in found]
             missing |= without
     table = pd.DataFrame(rows)
     table["ms"] = 1e3 * table.seconds / table.steps
-    return table.assign(rate=1e-3 * table.contacts / table.ms), starts, missing, others
+    return table.assign(rate=1e-3 * table.contacts / table.ms), starts, missing, load
 
 
 def errors_by_step(steps, seeds, radius, duration):
@@ -160,7 +156,7 @@ def by_code(table, scenes):
     for (name, moment), here in table.groupby(["scene", "moment"], sort=False):
         ours = here[here.code == "engine"].set_index(["threads", "round"]).rate
         for code, own in here.groupby("code", sort=False):
-            row = {"scene": scenes[name].title, "moment": moment, "code": codes.CODES[code].name}
+            row = {"scene": scenes[name].title, "moment": moment, "code": codes.CODES[code].title}
             row["contacts"] = round(here[here.code == "engine"].contacts.mean())
             for threads, of_threads in own.groupby("threads"):
                 ratio = ours.loc[threads] / of_threads.set_index("round").rate
@@ -184,15 +180,15 @@ def whole_runs(table, scenes, starts):
         row = {"scene": scenes[name].title, "small steps": starts[name].steps}
         for (code, threads), of_moments in ms.loc[name].groupby(["code", "threads"]):
             minutes = (of_moments.droplevel([0, 1]) * weights).sum(min_count=len(weights)) * starts[name].steps / 60e3
-            row[f"{codes.CODES[code].name}, {threads}"] = f"{minutes:.3g}"
+            row[f"{codes.CODES[code].title}, {threads}"] = f"{minutes:.3g}"
         rows.append(row)
     return pd.DataFrame(rows).fillna("")
 
 
-def page(group, table, scenes, starts, missing, others, how, error):
+def page(group, table, scenes, starts, missing, load, how, error):
     """The text that is printed."""
-    head = dict(group=group, rounds=how.rounds, together=measured_scenes.SMALL_STEPS, others=others)
-    parts = [HEAD.format(**head, **machine()), by_code(table, scenes).to_string(index=False)]
+    head = dict(group=group, rounds=how.rounds, together=measured_scenes.SMALL_STEPS, load=load)
+    parts = [HEAD.format(**head, **codes.machine()), by_code(table, scenes).to_string(index=False)]
     whole = whole_runs(table, scenes, starts)
     if len(whole):
         parts += ["\nMinutes of whole runs, from these moments", whole.to_string(index=False)]
@@ -204,18 +200,17 @@ def page(group, table, scenes, starts, missing, others, how, error):
         orders = [f"{name} {order(error[name]):.2f}" for name in ("ledger", "d_max")]
         parts.append(f"order of convergence: {', '.join(orders)}")
     others = [code for code in table.code.unique() if codes.CODES[code].physics]
-    parts += ["", *(f"{codes.CODES[code].name}: {codes.CODES[code].physics}" for code in others)]
-    versions = table[table.code.isin(peers.TITLES)].groupby("code").version.first()
-    parts += [f"{codes.CODES[code].name} is {version}" for code, version in versions.items()]
-    return "\n".join(parts + [f"{codes.CODES[code].name} was not measured: {why}" for code, why in missing.items()])
+    parts += ["", *(f"{codes.CODES[code].title}: {codes.CODES[code].physics}" for code in others)]
+    parts += [f"{codes.CODES[code].title} is {codes.version(code)}" for code in others]
+    return "\n".join(parts + [f"{codes.CODES[code].title} was not measured: {why}" for code, why in missing.items()])
 
 
 def main():
     given = arguments()
     how, scenes = given.how, given.scenes
-    table, starts, missing, others = measured(scenes, how)
+    table, starts, missing, load = measured(scenes, how)
     error = errors_by_step(*how.error) if given.group == "bench" else None
-    text = page(given.group, table, scenes, starts, missing, others, how, error)
+    text = page(given.group, table, scenes, starts, missing, load, how, error)
     OUT.mkdir(parents=True, exist_ok=True)
     table.to_csv(OUT / f"{given.group}.csv", index=False)
     (OUT / f"{given.group}.txt").write_text(text + "\n")

@@ -1,12 +1,16 @@
 """The scenes that are measured: the bench's own, those of the papers, and the collision that every code runs.
 
-A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured
-(moments.py makes their files).
+A scene is what a run of collide.py or compress.py starts from, and the moments of that run at which codes are measured:
+files of grains with the springs of all contacts, which the engine itself has reached. They lie in build/bench/scenes:
+made once, they serve every version of the engine, and are made again when the scene's definition changes.
 """
 
-from dataclasses import dataclass, field
+import hashlib
+import json
+from dataclasses import dataclass, field, replace
 from math import ceil, log
 
+import codes
 import numpy as np
 import scene_file
 
@@ -27,10 +31,10 @@ SMALL_STEPS = 50  # in an O.step of a collision
 class Scene:
     """A run and its moments.
 
-    title: in words; kind: collision, compression, or materials (a collision in which every other grain, at random, is
-    of SOFT); parameters: of the run, as tables have them; moments: {name: time [s] or filling factor}, in their order
-    (None: the start); apart: time [s] by which a collision's first moment is moved back along straight lines, for a
-    flight long enough to measure; codes: names of codes.CODES to measure.
+    kind: collision, compression, or materials (a collision in which every other grain, at random, is of SOFT);
+    parameters: of the run, as tables have them; moments: {name: time [s] or filling factor}, in their order (None: the
+    start); apart: time [s] by which a collision's first moment is moved back along straight lines, for a flight long
+    enough to measure; codes: names of codes.CODES to measure.
     """
 
     title: str
@@ -130,7 +134,7 @@ SMALL = {
 SOFT = {"young": 3e9, "poisson": 0.33, "surfaceEnergy": 0.05, "criticalRolling": 1.1e-9}
 
 
-def start(scene):
+def start_of(scene):
     """Start of a Scene's run."""
     return _compressed(scene) if scene.kind == "compression" else _collided(scene)
 
@@ -168,3 +172,72 @@ def _compressed(scene):
     together = min(compression.BETWEEN_SAMPLES, compression.FINEST_FILLING / (6 * parameters.strainRate))
     together = max(1, round(together / parameters.stepFraction))  # between samples, as compress.py has it
     return Start(made.with_strain_rate(rate), duration, time_unit, together, progress)
+
+
+# ---- the files of their moments ----
+
+FOLDER = codes.TOP / "build/bench/scenes"
+FAST_STRAIN = 1e-5  # 1/t0: at which the denser cells are made
+RELAXED = 3000.0  # t0 at the paper's own rate before a denser cell is measured, in which what was stirred up dies down
+LARGE = 1e6  # bytes of a scene's file from which on two threads pay
+
+
+def make(name, scene, folder=FOLDER):
+    """Start of a Scene, and {moment: its file}; a file that exists is not made again."""
+    start = start_of(scene)
+    made = [FAST_STRAIN, RELAXED] if scene.kind == "compression" else [scene.apart]
+    definition = json.dumps([scene.kind, scene.parameters, scene.moments, *made, scene_file.FORMAT], sort_keys=True)
+    key = hashlib.sha256(definition.encode()).hexdigest()[:8]
+    paths = {moment: folder / f"{name}-{moment.replace(' ', '')}-{key}.scene" for moment in scene.moments}
+    if not all(path.exists() for path in paths.values()):
+        print(f"making the moments of {name}", flush=True)
+        folder.mkdir(parents=True, exist_ok=True)
+        here = folder / f"{name}-{key}.begin"
+        (_make_cells if scene.kind == "compression" else _make_collision)(scene, start, paths, here)
+        here.unlink()
+    return start, paths
+
+
+def _make_collision(scene, start, paths, here):
+    scene_file.save(here, start.scene)
+    grains = start.scene.grains.copy()
+    grains["position"] -= scene.apart * grains["velocity"]
+    first, *later = paths
+    scene_file.save(paths[first], replace(start.scene, grains=grains))
+    time = 0.0
+    for moment in later:
+        advance(here, here, (scene.moments[moment] - time) / start.step, start.together)
+        paths[moment].write_bytes(here.read_bytes())
+        time = scene.moments[moment]
+
+
+def _make_cells(scene, start, paths, here):
+    """The denser cells are made at FAST_STRAIN, and then follow the paper's rate for RELAXED t0."""
+    own, fast = start.scene.head["strainRate"].copy(), np.full(3, -2 * FAST_STRAIN / start.time_unit)
+    scene_file.save(here, start.scene.with_strain_rate(fast))
+    for moment, path in paths.items():
+        filling = scene.moments[moment]
+        if filling is None:
+            scene_file.save(path, start.scene)
+            continue
+        relaxing = RELAXED * start.time_unit
+        growth = log(filling / filling_of(scene_file.load(here)))
+        growth += 3 * own[0] * relaxing  # less what the relaxation brings
+        advance(here, here, growth / (-3 * fast[0]) / start.step, start.together)
+        slowed = path.with_suffix(".own")
+        scene_file.save(slowed, scene_file.load(here).with_strain_rate(own))
+        advance(slowed, path, relaxing / start.step, start.together)
+        slowed.unlink()
+
+
+def filling_of(scene):
+    """Volume filling factor of a periodic SceneFile."""
+    return filling_factor(scene.grains["radius"], scene.head["cellSize"])
+
+
+def advance(begin, end, steps, together):
+    """Take the scene of one file to another by the engine, so many small steps on, in whole O.steps."""
+    new, threads = end.with_suffix(".new"), 2 if begin.stat().st_size > LARGE else 1  # the same bits
+    steps = max(1, round(steps / together)) * together
+    codes.harness(begin, steps=steps, together=together, threads=threads, out=new)
+    new.replace(end)

@@ -12,8 +12,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks")]
 import codes
+from codes import TOP, machine
 from debian_systems import last_commit_in, run, write_page
-from measured_on import TOP, machine
 from sanitizers import small_scenes
 
 CLONE, COMPILER = TOP / "build/arm64", "aarch64-linux-gnu-g++"
@@ -33,8 +33,8 @@ def rows():
     for name, scene in small_scenes(CLONE / "build"):
         for threads in (1, 2):
             how = dict(steps=1000, domains=4, instructions="portable", threads=threads)
-            here = codes.harness(scene, **how)[-1]["hash"]
-            there = codes.harness(scene, EMULATED, program=CLONE / "build/harness", **how)[-1]["hash"]
+            here = codes.harness(scene, **how)["hash"]
+            there = codes.harness(scene, EMULATED, program=CLONE / "build/harness", **how)["hash"]
             yield f"| {name} | {threads} | {here} | {there} |", here == there
 
 

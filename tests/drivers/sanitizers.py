@@ -10,15 +10,14 @@ import os
 import subprocess
 import sys
 import tempfile
-from itertools import chain
+from itertools import chain, product
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1]), str(HERE), str(HERE.parent / "benchmarks")]
-import moments
+import measured_scenes
+from codes import TOP, machine
 from debian_systems import last_commit_in, run, write_page
-from measured_on import TOP, machine
-from measured_scenes import SMALL
 
 FOLDER, COMPILER = TOP / "build/sanitizers", "clang++-14"
 MEMORY, THREADS = "address,undefined", "thread"  # as -fsanitize has them
@@ -67,12 +66,12 @@ def row(sanitize, what, command, **more):
 
 
 def of_harness(sanitize, scenes):
-    """A row for each scene: one to four threads by turns, without vectors and with the best instructions here."""
+    """A row for each scene with one, two and four threads, without vectors and with the best instructions here."""
     make(sanitize, "build/harness")
     for name, path in scenes:
-        for instructions in ("portable", ""):
-            how = ["steps=200", "threads=1,2,4", "domains=8", f"instructions={instructions}"]
-            what = f"harness, {name}, {instructions or 'the best instruction set'}"
+        for instructions, threads in product(("portable", ""), (1, 2, 4)):
+            how = ["steps=200", f"threads={threads}", "domains=8", f"instructions={instructions}"]
+            what = f"harness, {name}, {instructions or 'the best instruction set'}, {threads} threads"
             yield row(sanitize, what, ["build/harness", str(path), *how])
 
 
@@ -91,9 +90,8 @@ def small_scenes(folder):
     """[(name and moment, file)] of small scenes, made in a folder: drag, a periodic cell, bonds that break."""
     folder.mkdir(parents=True, exist_ok=True)
     run(["make", "build/harness"], cwd=TOP)
-    for name, scene in SMALL.items():
-        moments.make(name, scene, folder)
-    return [(f"{n}, {m}", moments.path_of(n, m, scene, folder)) for n, scene in SMALL.items() for m in scene.moments]
+    made = {name: measured_scenes.make(name, scene, folder)[1] for name, scene in measured_scenes.SMALL.items()}
+    return [(f"{name}, {moment}", path) for name, paths in made.items() for moment, path in paths.items()]
 
 
 def main():

@@ -22,7 +22,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "benchmarks")]
-from measured_on import machine
+from codes import machine
 from mutation import TOP, read
 
 LONGEST = 3600  # s for the tests of one mutation

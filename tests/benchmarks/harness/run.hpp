@@ -86,7 +86,6 @@ inline ContactRecord recordOf(const ContactNow& c)
 
 class Run {
 public:
-	// Throws std::invalid_argument or std::runtime_error for a scene that the engine cannot start from.
 	Run(const Scene& scene_, int domains, int threads, const std::string& instructions)
 	        : scene(scene_)
 	{
@@ -95,12 +94,6 @@ public:
 		const auto materials = materialsOf(scene);
 		engine = scene.contacts.empty() ? std::make_unique<Dynamics>(grains, materials, options)
 		                                : std::make_unique<Dynamics>(grains, materials, options, contactsOf(scene));
-		const double unstable = contact_law::unstableStep(*engine);
-		if (!(scene.head.step > 0 && scene.head.step < unstable))
-			throw std::invalid_argument("the scene's step is " + std::to_string(scene.head.step * 1e9)
-			        + " ns: must be above 0 and below " + std::to_string(unstable * 1e9) + " ns");
-		if (scene.periodic() && !engine->cell().holds(engine->reach()))
-			throw std::invalid_argument("the scene's periodic cell is too small: must be at least twice the reach of a pair");
 	}
 
 	/* Small steps, `together` at a time as in an O.step with so many subSteps: a periodic cell's size goes evenly through each of these.
@@ -151,10 +144,7 @@ public:
 		return hash;
 	}
 
-	double totalEnergy() { return engine->totalEnergy(); }
-
-	double kineticEnergy() { return engine->energies().kinetic; } // [J]
-	contact_law::Dynamics& dynamics() { return *engine; }
+	Dynamics& dynamics() { return *engine; }
 
 private:
 	Scene scene;
