@@ -33,15 +33,15 @@ from analysis.startup import end_quietly, require_libraries
 end_quietly(signal.SIGINT)
 require_libraries()
 from analysis.printable import meant, printable, shell_line
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from analysis.version import version_text
-from yade_scripts.parameters.errors import tell
-from yade_scripts.run.loop import StopSignals
+from yade_scripts.parameters.errors import InputError, tell
 from yade_scripts.run.parameters import CORES
-from yade_scripts.run.table import TableError
+from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
-from yade_scripts.runner.batch import LOGS, Batch, StudyBusy
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING, refusal
-from yade_scripts.runner.study import Screen, Study, full_table, live_table
+from yade_scripts.runner.batch import LOGS, Batch
+from yade_scripts.runner.rows import refusal
+from yade_scripts.runner.study import Screen, Study
 from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
@@ -80,31 +80,30 @@ def place_of(table):
 def submit(study, options):
     """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
     states, queued = study.states_with_queue(sure=True)
-    refused = {row.name: reason for row in study.rows if (reason := refusal(row))}
-    for name, reason in refused.items():
-        tell(f"{name}: {reason}; the other rows are submitted", SCRIPT)
-    left = [
-        row
-        for row, state, there in zip(study.rows, states, queued)
-        if state.kind in (WAITING, FAILED) and row.name not in refused and not there
-    ]
+    left, refused = [], 0
+    for row, state, in_queue in zip(study.rows, states, queued):
+        if reason := refusal(row):
+            tell(f"{row.name}: {reason}; the other rows are submitted", SCRIPT)
+            refused += 1
+        elif state.kind in (WAITING, FAILED) and not in_queue:
+            left.append(row)
     jobs = slurm.jobs(study.folder, left, options.jobs)
     if options.dry_run:
         if not left:
             tell("all rows have ended, or are in the queue: nothing to submit", SCRIPT)
         texts = [f"{script}# {shell_line(slurm.command(folder, options.sbatch))}\n" for folder, _, _, script in jobs]
-        print("\n".join(texts), end="")
-        return int(bool(refused))
+        print("\n".join(texts), end="", flush=True)
+        return int(refused > 0)
     study.folder.remove_logs(left)
     for folder, rows, tasks, script in jobs:
         job = slurm.submit(folder, rows, tasks, script, options.sbatch)
         print(f"Slurm job {job}: {len(rows)} rows in {tasks} tasks, {rows[0].threads} threads each", flush=True)
     done, running = (sum(state.kind == kind for state in states) for kind in (DONE, RUNNING))
     print(
-        f"{printable(study.name)}: {len(states)} rows, {done} done, {running} running, {len(refused)} failed, "
+        f"{printable(study.name)}: {len(states)} rows, {done} done, {running} running, {refused} failed, "
         f"{sum(queued)} in the queue before, {len(left)} submitted"
     )
-    return int(bool(refused))
+    return int(refused > 0)
 
 
 def run(study, stop):
@@ -137,7 +136,7 @@ def _run_batch(study, left, screen, stop):
 
 
 def _draw(study, screen):
-    screen.draw_if_due(lambda: live_table(study.name, study.rows, study.states_with_queue()[0], study.jobs))
+    screen.draw_if_due(lambda: study.table(study.states_with_queue()[0], live=True))
 
 
 def close(study, stop):
@@ -173,13 +172,16 @@ def main(arguments):
         study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
-            print(full_table(study.name, study.rows, states, study.jobs) + study.undecided(states))
+            print(study.table(states) + study.undecided(states), flush=True)
             return 0
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
             return submit(study, options)
-    except (TableError, StudyBusy, slurm.SlurmError) as error:
+    except BrokenPipeError:  # of --status | head
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except InputError as error:
         tell(f"{error}{'' if os.path.exists(table) else meant(table, tables.names())}", SCRIPT)
         return 2
     except OSError as error:

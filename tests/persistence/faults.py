@@ -16,7 +16,7 @@ TOP = os.path.dirname(
     os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0] if __name__ == "__main__" else __file__)))
 )
 KILLED, DISK_FULL = "killed", "disk full"
-OF_RUNS = ["folder", "report", "scene"]
+OF_RUNS = ["script", "scene"]
 MODULES = ["contact_law", "yade_scripts.experiments.collision", *(f"yade_scripts.run.{name}" for name in OF_RUNS)]
 COLLIDE = "yade_scripts/collide.py"
 RECORDER = "checkpoint/recorder.npz"

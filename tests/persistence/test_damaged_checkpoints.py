@@ -45,7 +45,7 @@ def cut(file, length):
 
 DAMAGE = {
     "another commit": (with_text('"commit": "', '"commit": "0'), "written by the plugin of commit 0"),
-    "another YADE": (with_text('"yade": "', '"yade": "1'), "written by YADE 1"),
+    "another YADE": (with_text('"yade": "', '"yade": "1'), "written by yade 1"),
     "another kind": (with_text('"kind": "collision"', '"kind": "toy"'), "of a run with kind = toy, not collision"),
     "a text that is no JSON": (with_text(": ", ""), "not a checkpoint ("),
     "a bit of the scene": (lambda run, other: flip(scene_of(run), 0.5), "scene-4.yade: not as it was written"),

@@ -11,7 +11,7 @@ from scipy.integrate import trapezoid
 
 from analysis.runs.format import CHANNELS
 from yade_scripts.experiments.compression import KIND, typical_first_filling
-from yade_scripts.run.resuming import difference
+from yade_scripts.run.checkpoint import difference
 
 SMALL = ("grains=64", "strainRate=1e-4", "stepFraction=0.2", "threads=1")
 completed = partial(completed, script=COMPRESS)

@@ -11,8 +11,10 @@ from analysis.__main__ import main
 from analysis.runs import lock
 from analysis.runs.format import LOCK_FILE
 from analysis.runs.lock import Lock, read_lock, under_way
+from analysis.runs.status import FAILED
 from yade_scripts.experiments.collision import KIND
-from yade_scripts.run.folder import RunFolder, RunFolderError
+from yade_scripts.parameters.errors import InputError
+from yade_scripts.run.folder import RunFolder
 from yade_scripts.runner import rows
 
 ELSEWHERE = Lock("node7", "another boot", 99)
@@ -50,7 +52,7 @@ def test_a_folder_in_use_here_is_refused_until_the_run_is_killed(tmp_path):
         os.write(has_begun, b".")
         signal.pause()
     os.read(begun, 1)
-    with pytest.raises(RunFolderError, match="another run is writing there"):
+    with pytest.raises(InputError, match="another run is writing there"):
         RunFolder(path)
     assert under_way(path).pid == other
     os.kill(other, signal.SIGKILL)
@@ -62,7 +64,7 @@ def test_a_folder_in_use_here_is_refused_until_the_run_is_killed(tmp_path):
 def test_a_folder_of_another_machine_is_refused_and_its_host_named(tmp_path):
     folder = left_by(tmp_path / "run", ELSEWHERE)
     for options in ({}, {"overwrite": True}, {"resume": True}):
-        with pytest.raises(RunFolderError, match="another run is writing there, on node7; must be another folder"):
+        with pytest.raises(InputError, match="another run is writing there, on node7; must be another folder"):
             RunFolder(folder, **options)
     assert os.listdir(folder) == [LOCK_FILE] and read_lock(folder) == ELSEWHERE
     os.unlink(tmp_path / "run" / LOCK_FILE)
@@ -71,7 +73,7 @@ def test_a_folder_of_another_machine_is_refused_and_its_host_named(tmp_path):
 
 def test_a_lock_that_cannot_be_read_is_one_of_an_unknown_machine_and_an_empty_one_is_none(tmp_path):
     (tmp_path / LOCK_FILE).write_text("{")
-    with pytest.raises(RunFolderError, match="unknown machine"):
+    with pytest.raises(InputError, match="unknown machine"):
         RunFolder(str(tmp_path))
     (tmp_path / LOCK_FILE).write_text("")  # of a run that was killed as it began
     assert under_way(str(tmp_path)) is None
@@ -93,7 +95,7 @@ def test_slurm_says_whether_a_job_elsewhere_is_over(tmp_path, program, answer, s
     folder = left_by(tmp_path / "run", replace(ELSEWHERE, job="12_3"))
     assert bool(under_way(folder)) == is_running
     if is_running:
-        with pytest.raises(RunFolderError, match="on node7, Slurm job 12_3"):
+        with pytest.raises(InputError, match="on node7, Slurm job 12_3"):
             RunFolder(folder)
     else:
         RunFolder(folder).close()
@@ -130,7 +132,7 @@ def _start(path):
     try:
         RunFolder(path)
         os._exit(0)
-    except RunFolderError:
+    except InputError:
         os._exit(1)
     finally:
         os._exit(2)
@@ -142,6 +144,6 @@ def test_both_commands_show_where_a_run_is(tmp_path, capsys):
     (tmp_path / "run" / "run.json").write_text('{"outcome": "running"}')
     row = rows.StudyRow("row", {}, "collide.py", KIND, KIND.parse({"out": folder}))
     found = rows.state(row, str(tmp_path / "log"))
-    assert found.kind == rows.FAILED and "is run on node7" in found.note
+    assert found.kind == FAILED and "is run on node7" in found.note
     assert main(["status", folder, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)[0]["host"] == "node7"

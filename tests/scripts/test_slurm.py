@@ -9,6 +9,7 @@ from multiprocessing.pool import ThreadPool
 import pytest
 from running import PYTHON, TOP, study, wait_for
 
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm
 
@@ -116,7 +117,7 @@ def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
 
 STOPS = """
 import sys, time
-from yade_scripts.run.loop import StopSignals
+from yade_scripts.run.script import StopSignals
 stop = StopSignals()
 print("begun", flush=True)
 while not stop.received:
@@ -166,7 +167,7 @@ def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
     monkeypatch.setenv("SLURM_ARRAY_JOB_ID", "12")
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "3")
     program("scontrol", 'echo "$@" > scontrol')
-    states = iter([rows.State(rows.WAITING, 0.1), rows.State(rows.WAITING, progress, note="checkpoint")])
+    states = iter([State(WAITING, 0.1), State(WAITING, progress, note="checkpoint")])
     monkeypatch.setattr(rows, "state", lambda *_, **__: next(states))
 
     def stopped(task, *_):
@@ -183,9 +184,9 @@ def test_a_row_that_ended_or_runs_elsewhere_is_not_run(tmp_path, capsys, monkeyp
     write_table(tmp_path, ONE, "rows.table")
     monkeypatch.setattr(slurm.Task, "_run", None)
     for state, status, text in (
-        (rows.State(rows.DONE, 1.0), 0, "a: has ended before\n"),
-        (rows.State(rows.RUNNING, host="node7", note="on node7"), 1, "slurm.py: a: is running on node7\n"),
-        (rows.State(rows.FAILED, note="holds another"), 1, "slurm.py: a: holds another\n"),
+        (State(DONE, 1.0), 0, "a: has ended before\n"),
+        (State(RUNNING, host="node7", note="on node7"), 1, "slurm.py: a: is running on node7\n"),
+        (State(FAILED, note="holds another"), 1, "slurm.py: a: holds another\n"),
     ):
         monkeypatch.setattr(rows, "state", lambda *_, state=state: state)
         monkeypatch.setattr(rows, "refusal", lambda _, state=state: state.note or None)

@@ -13,8 +13,8 @@ from yade_scripts.experiments import collision, collision_step, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
+from yade_scripts.run.checkpoint import difference
 from yade_scripts.run.parameters import from_arguments
-from yade_scripts.run.resuming import difference
 from yade_scripts.run.table import write
 
 AUTO = {"stepFraction": "auto"}

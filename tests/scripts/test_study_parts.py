@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from running import Terminal
 
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, default_duration, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constants
 from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.placing import first_touch
-from yade_scripts.run import resuming, table
+from yade_scripts.run import checkpoint, table
 from yade_scripts.run.parameters import gather
-from yade_scripts.run.report import closing_line, outcome_in
 from yade_scripts.runner import rows
-from yade_scripts.runner.study import Screen, live_table, time_left
+from yade_scripts.runner.study import Screen, Study
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
@@ -62,7 +62,7 @@ def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
         if text is not None:
             (tmp_path / "run" / "run.json").write_text(text)
         found = rows.state(given, str(tmp_path / "log"))
-        assert found.kind == rows.FAILED and "run.json" in found.note
+        assert found.kind == FAILED and "run.json" in found.note
 
 
 def test_contact_updates_are_those_of_a_packing():
@@ -89,24 +89,31 @@ def test_the_default_duration_is_estimated_without_packings(cells):
     )
 
 
+def study_of(*given):
+    """A Study of these rows with two threads at once."""
+    study = Study.__new__(Study)
+    study.name, study.rows, study.jobs = "tiny", list(given), 2
+    return study
+
+
 def test_expected_times_follow_the_rows_that_have_ended():
     """Steps times contacts over the speed; threads at once share the work."""
     small, large = row(radius=40), row(radius=80)
     seconds, estimate = small.expected_seconds, KIND.estimate(small.parameters)
     assert seconds == pytest.approx(estimate.steps * estimate.contacts / 80e6)
     assert 14 < large.expected_seconds / seconds < 17
-    waiting, done = rows.State(rows.WAITING), rows.State(rows.DONE, 1.0, 2 * seconds)
-    assert time_left([small] * 2, [waiting] * 2, 2) == pytest.approx(seconds)
-    assert time_left([small] * 3, [waiting] * 3, 2) == pytest.approx(1.5 * seconds)
-    assert time_left([small, large], [done, waiting], 2) == pytest.approx(2 * large.expected_seconds)
-    assert time_left([small] * 2, [rows.State(rows.RUNNING, 0.5, left=7.0), done], 2) == 7.0
+    waiting, done = State(WAITING), State(DONE, 1.0, 2 * seconds)
+    assert study_of(small, small).time_left([waiting] * 2) == pytest.approx(seconds)
+    assert study_of(small, small, small).time_left([waiting] * 3) == pytest.approx(1.5 * seconds)
+    assert study_of(small, large).time_left([done, waiting]) == pytest.approx(2 * large.expected_seconds)
+    assert study_of(small, small).time_left([State(RUNNING, 0.5, left=7.0), done]) == 7.0
     of_own_kind = rows.StudyRow("own", {}, "own.py", None, parse({}))
-    assert time_left([small, of_own_kind], [waiting, waiting], 2) is None
+    assert study_of(small, of_own_kind).time_left([waiting, waiting]) is None
 
 
 def differences(wanted, run):
     """Of the wanted parameters, and of those with each of some changed, from a run."""
-    return lambda **changed: resuming.difference(KIND, wanted.changed(**changed), run)
+    return lambda **changed: checkpoint.difference(KIND, wanted.changed(**changed), run)
 
 
 def test_difference_names_the_first_parameter_that_disagrees():
@@ -168,16 +175,10 @@ def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
     assert difference() == "duration = 4.6512e-07, not 5.168e-07"
 
 
-@pytest.mark.parametrize("outcome", ["completed", "interrupted", "failed: energy (1 J): (a) b"])
-def test_the_outcome_is_read_back_from_the_closing_line(outcome):
-    assert outcome_in("Welcome\n" + closing_line("runs/a (1)\n", outcome, 12.34) + "\nbye\n") == outcome
-    assert outcome_in("Welcome\n") is None
-
-
 def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
     three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
-    states = [rows.State(rows.RUNNING, 0.43, 60, 25.0), rows.State(rows.DONE, 1.0, 44.0)]
-    text = live_table("tiny", three, [*states, rows.State(rows.FAILED, note="it broke")], 2)
+    states = [State(RUNNING, 0.43, 60, 25.0), State(DONE, 1.0, 44.0)]
+    text = study_of(*three).table([*states, State(FAILED, note="it broke")], live=True)
     assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
     assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
     terminal, file = Terminal(), StringIO()

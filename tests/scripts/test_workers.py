@@ -53,7 +53,7 @@ def test_a_worker_that_is_killed_loses_its_row_alone_and_says_which(one_worker):
     assert status == 1 and output.splitlines()[-1].startswith("rows: 7 rows, 4 done, 3 failed; 4 undecided (")
     refused, fails, killed = errors.splitlines()
     assert killed.startswith("study.py: killed: killed by signal 9 (checkpoint at ")
-    assert refused.startswith("study.py: refused: collide.py: stepFraction = 0.4: ") and "broke down" in fails
+    assert refused.startswith("study.py: refused: refused: stepFraction = 0.4: ") and "broke down" in fails
     begun = [name for name in RUNS if "Welcome to Yade" in log(folder, name).read_text()]
     assert begun == ["bcca", "again"]  # two workers
     assert same_bits(folder / "bcca", folder / "again")

@@ -1,4 +1,4 @@
-"""Checkpoints: what a run needs to resume to the same bits after it was stopped or killed.
+"""Checkpoints, by which a run that was stopped or killed resumes to the same bits, and with which parameters.
 
 The folder checkpoint/ of a run holds scene-STEP.yade (O.save: the bodies and the engine's arrays) and recorder.npz:
 the history so far, and whose checkpoint this is, with the sums of the scene and of the states before it. It is
@@ -8,17 +8,22 @@ same bits; YADE's own loop may add up forces in another order after loading, so 
 import json
 import mmap
 import os
+import sys
 import time
+from dataclasses import dataclass
 
-from analysis.runs.files import RunFolderError, npz, read_arrays, read_bytes
-from analysis.runs.format import CHECKPOINT_FOLDER
+import numpy as np
+
+from analysis.printable import shell_line
+from analysis.runs.files import RunFolderError, npz, read_arrays, read_bytes, read_json
+from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, RUN_FILE, same
+from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import InputError
+from yade_scripts.run.parameters import CORES
 
 RECORDER = f"{CHECKPOINT_FOLDER}/recorder.npz"
-
-
-class CheckpointError(InputError):
-    """A checkpoint that can't be used; the message is one line: what, where, what it must be."""
+CONTINUE = "continue"
+OWN = "out", "overwrite", "resume"  # parameters that continue=FOLDER sets
 
 
 def exists(run_folder):
@@ -26,65 +31,74 @@ def exists(run_folder):
     return os.path.exists(os.path.join(run_folder, RECORDER))
 
 
+@dataclass(frozen=True)
 class Checkpoint:
-    """A checkpoint read from a run folder's path.
+    """A checkpoint of a run folder."""
 
-    .rows (T, columns) of the history, .columns their names, .run as in run.json, .wallTime [s] spent so far,
-    .interval (small steps between samples), .states (number of states written), .sums {file: SHA-256} of scene and
-    states, .scene the name of the scene's file. Raises CheckpointError when it can't be read; scene and states are
-    not read until require_whole()."""
+    run_folder: str  # its path
+    rows: np.ndarray  # (T, columns) of the history
+    columns: list  # their names
+    run: dict  # as in run.json
+    wallTime: float  # spent so far [s]
+    scene: str  # name of the scene's file
+    interval: int  # small steps between samples
+    states: int  # number of states written
+    sums: dict  # {file: SHA-256} of scene and states
 
-    def __init__(self, run_folder):
-        self.run_folder, self.folder = run_folder, os.path.join(run_folder, CHECKPOINT_FOLDER)
+    @classmethod
+    def read(cls, run_folder):
+        """The checkpoint in a run folder; scene and states are not read until require_whole(). Raises InputError."""
         try:
             found = read_arrays(os.path.join(run_folder, RECORDER), ["rows"], texts=["about"])
-            about = json.loads(found["about"])
-            self.rows, self.columns = found["rows"], about.get("columns")
-            self.run, self.wallTime, self.interval = about.get("run"), about.get("wallTime"), about.get("interval")
-            self.scene, self.states, self.sums = about.get("scene"), about.get("states"), about.get("sums")
-        except (RunFolderError, ValueError, AttributeError) as error:
-            raise CheckpointError(
-                f"{self.folder}: not a checkpoint ({error}); must be removed to start the run again"
+            return cls(run_folder, found["rows"], **json.loads(found["about"]))
+        except (RunFolderError, ValueError, TypeError) as error:
+            raise InputError(
+                f"{run_folder}/{CHECKPOINT_FOLDER}: not a checkpoint ({error}); must be removed to start the run again"
             ) from None
 
     def require_agreement(self, difference, made_with):
-        """Raise CheckpointError unless it was written by this software, and is of the run that is wanted.
+        """Raise InputError unless it was written by this software, and is of the run that is wanted.
 
-        difference: of its run from the wanted one (resuming.difference()), or None; made_with: as report.made_with()
-        gives it. The layout of what YADE saves belongs to one build."""
-        for name, version in (("YADE", "yade"), ("contact_law", "contact_law")):
-            written, present = self.run["versions"][version], made_with["versions"][version]
-            if written != present:
-                self._refuse(f"written by {name} {written}, not {present}")
-        if self.run["commit"] != made_with["commit"]:
-            self._refuse(f'written by the plugin of commit {self.run["commit"]}, not {made_with["commit"]}')
-        if difference:
-            self._refuse(f"of a run with {difference}")
+        difference: of its run from the wanted one (difference()), or None; made_with: as script.made_with() gives it.
+        The layout of what YADE saves belongs to one build."""
+        written, present = (
+            {**made["versions"], "the plugin of commit": made["commit"]} for made in (self.run, made_with)
+        )
+        reasons = [
+            f"written by {name} {written[name]}, not {present[name]}"
+            for name in ("yade", "contact_law", "the plugin of commit")
+            if written[name] != present[name]
+        ]
+        reasons += [f"of a run with {difference}"] if difference else []
+        if reasons:
+            raise InputError(
+                f"{self.run_folder}/{CHECKPOINT_FOLDER}: {reasons[0]}; must be the same, or removed to start the run "
+                "again"
+            )
 
     def require_time_left(self, duration, ended):
-        """Raise CheckpointError when the run has come further than the duration [s], or, one that has ended, as far."""
+        """Raise InputError when the run has come further than the duration [s], or, one that has ended, as far."""
         reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
         if reached * (1 + 1e-9 * (1 if ended else -1)) > duration:
-            raise CheckpointError(
+            raise InputError(
                 f"duration = {duration:.6g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer"
             )
 
     def require_whole(self):
-        """Raise CheckpointError unless the scene and the states before it are what was written."""
+        """Raise InputError unless the scene and the states before it are what was written."""
         try:
             for name, digits in self.sums.items():
                 read_bytes(os.path.join(self.run_folder, name), digits)
         except RunFolderError as error:
-            raise CheckpointError(f"{error}; must be as it was written, or {self.folder} removed") from None
+            raise InputError(
+                f"{error}; must be as it was written, or {self.run_folder}/{CHECKPOINT_FOLDER} removed"
+            ) from None
 
     def load_scene(self):
         """Put the saved scene in the place of YADE's present one."""
         from yade.wrapper import Omega
 
         Omega().load(os.path.join(self.run_folder, self.scene))
-
-    def _refuse(self, reason):
-        raise CheckpointError(f"{self.folder}: {reason}; must be the same, or removed to start the run again")
 
 
 class CheckpointWriter:
@@ -113,7 +127,7 @@ class CheckpointWriter:
             return
         scene = f"{CHECKPOINT_FOLDER}/scene-{omega.iter}.yade"
         self.folder.write(scene, _saved_scene(omega))
-        about = {
+        about = {  # the fields of Checkpoint
             "run": self.run,
             "wallTime": self.wall_time(),
             "scene": scene,
@@ -129,10 +143,93 @@ class CheckpointWriter:
 
 
 def _saved_scene(omega):
-    """The running scene as O.save writes it, in memory: to a full disk O.save would write a part and say nothing."""
+    """The running scene as O.save writes it, in memory: to a full disk O.save would write a part without an error."""
     handle = os.memfd_create("scene")
     try:
         omega.save(f"/proc/self/fd/{handle}", True)
         return mmap.mmap(handle, 0, access=mmap.ACCESS_READ)
     finally:
         os.close(handle)
+
+
+# ---- which run a folder holds, and with which parameters it goes on: without YADE ----
+
+
+def difference(kind, wanted, run, but=()):
+    """The first parameter in which a run is not what is wanted, 'name = this, not that', or None.
+
+    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run that was
+    continued has a longer duration than is wanted, and is what is wanted all the same. A step that is still to be
+    chosen is that of any run that chose it for the same tolerance; a number is compared as such, whether or not it
+    was chosen.
+
+    Parameters
+    ----------
+    kind : run.kind.Kind
+    wanted : parameters of that kind
+    run : dict
+        As in run.json, with 'parameters' and 'derived'.
+    but : names that are not compared
+    """
+    there = run.get("kind", "collision")  # format 1 had collisions only
+    if there != kind.name:
+        return f"kind = {there}, not {kind.name}"
+    expected = {**wanted.as_dict(), **kind.expected(wanted, run)}
+    columns, held = kind.parameters.columns(), run.get("parameters", {})
+    step_is_open = isinstance(wanted.stepFraction, str) and held.get("tolerance") is not None
+    left_out = {"stepFraction" if step_is_open else "tolerance", *but}
+    for name, column in columns.items():
+        if not column.of_consequence or name in left_out:
+            continue
+        value, found = expected[name], held.get(name, run.get("derived", {}).get(name, column.default))
+        longer = name == "duration" and None not in (found, value) and found > value
+        if not (same(value, found) or longer):
+            return f"{name} = {_text(found)}, not {_text(value)}"
+    return None
+
+
+def _text(value):
+    if value is None:
+        return "the default"
+    return f"{value:.12g}" if isinstance(value, float) else str(value)
+
+
+def continued(kind, texts):
+    """The Kind's parameters of the run in the folder texts["continue"], which resumes.
+
+    texts: {name: text}; what else is given in them must be a duration, or of no consequence. Raises ParameterError."""
+    folder, given = texts[CONTINUE], {name: text for name, text in texts.items() if name != CONTINUE}
+    columns = kind.parameters.columns()
+    for name in given:
+        if name in columns and (name in OWN or columns[name].of_consequence and name != "duration"):
+            raise ParameterError(f"{name}: given with {CONTINUE} = {folder}, whose own it is; must be left out")
+    found = kind.parameters.parse(given)  # only for its checks
+    held = _held(kind, folder)
+    if held["threads"]:
+        held["threads"] = min(held["threads"], CORES)  # of another machine
+    held |= {name: getattr(found, name) for name in given}
+    return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})
+
+
+def _held(kind, folder):
+    """The parameters in a folder's run.json, of this kind."""
+    try:
+        run = read_json(os.path.join(folder, RUN_FILE))
+        held = run["parameters"]
+    except (RunFolderError, KeyError, TypeError) as error:
+        raise ParameterError(f"{CONTINUE} = {folder}: {error}; must be the folder of a run") from None
+    if run.get("kind") != kind.name or set(held) != set(kind.parameters.columns()):
+        raise ParameterError(
+            f"{CONTINUE} = {folder}: a run of another kind or version; must be a {kind.name} of this version"
+        )
+    if os.path.exists(os.path.join(folder, ENDED_FILE)) and not exists(folder):
+        raise ParameterError(
+            f"{CONTINUE} = {folder}: the run has ended, decided; must be one that was stopped, or is undecided"
+        )
+    return held
+
+
+def command(folder, **changed):
+    """The command that continues the run in a folder, as this process was called."""
+    words = ["yade", "-n", "-x", sys.argv[0], f"{CONTINUE}={folder}"]
+    return shell_line(words + [f"{name}={value:g}" for name, value in changed.items()])

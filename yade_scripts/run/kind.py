@@ -1,4 +1,4 @@
-"""What run/ and runner/ know of a kind of run: a Kind for each file of experiments/, and when a run is sampled."""
+"""The interface of a kind of run, an instance of Kind for each file of experiments/, and when a run is sampled."""
 
 from dataclasses import dataclass, field
 from math import ceil
@@ -12,7 +12,7 @@ MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
 
 class Estimate(NamedTuple):
-    """What a run is about to take: number of grains, mean number of contacts, small steps until its end."""
+    """The size of a run before it begins: number of grains, mean number of contacts, small steps until its end."""
 
     grains: float
     contacts: float
@@ -56,7 +56,7 @@ class Kind:
     estimate: Callable[[Any], Estimate]  # of parameters, without YADE
     # (parameters, run.json) -> {name: value} that a run should hold of parameters that are None and follow from the run
     expected: Callable[[Any, Mapping], Mapping] = lambda parameters, run: {}
-    # run folder -> why what the run is about is not decided at its end, in a few words, or None
+    # run folder -> why its outcome is not decided at its end, in a few words, or None
     why_undecided: Callable[[str], str | None] = lambda folder: None
 
     @property

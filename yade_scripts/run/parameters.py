@@ -72,7 +72,8 @@ class RunParameters(Parameters):
 
     @classmethod
     def parse(cls, texts, description=None):
-        """As Parameters.parse; `out` is named after the table's row or the parameters where it isn't given."""
+        """As Parameters.parse; `out` is named after the table's row (description) or the parameters where it isn't
+        given."""
         found = super().parse(texts)
         if found.out is not None:
             return found
@@ -96,17 +97,13 @@ class RunParameters(Parameters):
 
     def with_threads(self, of_yade):
         """The same with the number of threads; of_yade: those that YADE was started with."""
-        if self.engine == "fused":
-            threads = self.threads or min(of_yade, CORES)
-            if threads > CORES:
-                raise ParameterError(f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}")
-            return self.changed(threads=threads)
-        if self.threads not in (None, of_yade):
-            raise ParameterError(
-                f"threads = {self.threads}: YADE was started with {of_yade}; must be the same "
-                "(yade -jN, or the column !OMP_NUM_THREADS of a table)"
-            )
-        return self.changed(threads=of_yade)
+        threads = self.threads or (min(of_yade, CORES) if self.engine == "fused" else of_yade)
+        if self.engine == "fused" and threads > CORES:
+            raise ParameterError(f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}")
+        if self.engine != "fused" and threads != of_yade:
+            must = "must be the same (yade -jN, or the column !OMP_NUM_THREADS of a table)"
+            raise ParameterError(f"threads = {threads}: YADE was started with {of_yade}; {must}")
+        return self.changed(threads=threads)
 
     def _name_with(self, texts):
         """The title, and whatever else was given and has consequences."""
@@ -116,10 +113,9 @@ class RunParameters(Parameters):
         return name + "".join(f"-{key}{value_text(getattr(self, key))}" for key in others)
 
 
-def file_name(text, others="-_.,=+"):
-    """text as the name of one file: letters, digits and `others`, the rest as _; a long one ends in a hash of the
-    text."""
-    name = "".join(c if c.isalnum() or c in others else "_" for c in text)
+def file_name(text):
+    """text as the name of one file: letters, digits and -_.,=+, others as _; a long one ends in a hash of the text."""
+    name = "".join(c if c.isalnum() or c in "-_.,=+" else "_" for c in text)
     if len(name.encode()) <= LONGEST:
         return name
     end = "-" + hashlib.sha256(text.encode()).hexdigest()[:12]
@@ -150,24 +146,20 @@ def gather(arguments, kind):
         The row's description; None without a row, and where an argument of consequence makes another run of it.
     """
     texts = from_arguments(arguments)
-    row = texts.pop("table", None) or os.environ.get("YADE_BATCH")
-    if not row:
+    where = texts.pop("table", None) or os.environ.get("YADE_BATCH")
+    if not where:
         return texts, None
-    columns, description = read_row(row)
-    known = kind.parameters.columns()
+    row, known = _row(where), kind.parameters.columns()
     another = any(name not in known or known[name].of_consequence for name in texts)
-    return {**columns, **texts}, (None if another else description)
+    return {**row.parameters, **texts}, (None if another else row.description)
 
 
-def read_row(row):
-    """({column: text}, description) of FILE:LINE, lines counted from 1; columns named !... are yade-batch's own."""
-    file, _, line = row.rpartition(":")
+def _row(where):
+    """The table.Row of FILE:LINE, lines counted from 1."""
+    file, _, line = where.rpartition(":")
     if not file:
-        raise ParameterError(f"table = {row}: must be FILE:LINE, one row of a table; study.py runs all")
-    try:
-        rows = {str(found.line): found for found in table.read(file)}
-    except table.TableError as error:
-        raise ParameterError(f"table {error}") from None
+        raise ParameterError(f"table = {where}: must be FILE:LINE, one row of a table; study.py runs all")
+    rows = {str(found.line): found for found in table.read(file)}
     if line not in rows:
-        raise ParameterError(f"table {row}: no such row; must be a line of {', '.join(rows)}")
-    return rows[line].parameters, rows[line].description
+        raise ParameterError(f"table {where}: no such row; must be a line of {', '.join(rows)}")
+    return rows[line]

@@ -2,7 +2,6 @@
 
 import time
 from contextlib import suppress
-from functools import cached_property
 from math import isfinite
 
 import numpy as np
@@ -51,7 +50,7 @@ class Recorder:
         self.columns = None  # until the first sample, or those of the checkpoint
         self.error = None
         self.ending = self.finished = False
-        self._rows, self._written = [], 0
+        self._rows, self.states_written = [], 0
         self._last_good = None  # state of the last sample, unless it is written already
         self._next_write = time.monotonic() + SECONDS_BETWEEN_WRITES
 
@@ -84,16 +83,11 @@ class Recorder:
         row[self.columns.index(name)] = value
         self._rows[-1] = tuple(row)
 
-    @property
-    def states_written(self):
-        """Number of states in the folder."""
-        return self._written
-
     def resume(self, rows, columns, states):
         """Have these rows, of a checkpoint, as the history so far, and so many states as written."""
         self.columns = list(columns)
         self._rows = [tuple(row) for row in rows.tolist()]
-        self._written = states
+        self.states_written = states
 
     def sample(self):
         try:
@@ -141,8 +135,8 @@ class Recorder:
 
     def _write_state(self, state):
         there = [quantity.name for quantity in self.states if not quantity.optional or quantity.name in state]
-        self.folder.write_state(self._written, {name: state[name] for name in there})
-        self._written += 1
+        self.folder.write_state(self.states_written, {name: state[name] for name in there})
+        self.states_written += 1
         self._last_good = None
 
     def _require_sound(self, state, energies):
@@ -157,13 +151,9 @@ class Recorder:
         if self.scene.energy_is_conserved:
             self._require_conserved(state, energies, when)
 
-    @cached_property
-    def _energies_at_start(self):
-        first = self.columns.index(CHANNELS[0])
-        return dict(zip(CHANNELS, self._rows[0][first : first + len(CHANNELS)]))
-
     def _require_conserved(self, state, energies, when):
-        start = self._energies_at_start if self._rows else energies
+        first = dict(zip(self.columns, self._rows[0])) if self._rows else energies
+        start = {channel: first[channel] for channel in CHANNELS}
         more = sum(energies.values()) - sum(start.values())
         scale = sum(map(abs, start.values())) + sum(abs(energies[name] - start[name]) for name in WORK_CHANNELS)
         if abs(more) > LARGEST_LEDGER_ERROR * scale:

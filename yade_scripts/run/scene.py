@@ -2,57 +2,29 @@
 
 from math import inf, pi
 
+import yade.wrapper as yade
 from yade import utils
-from yade.wrapper import (
-    Bo1_Sphere_Aabb,
-    Bo1_Wall_Aabb,
-    ForceResetter,
-    Ig2_Sphere_Sphere_ScGeom,
-    Ig2_Wall_Sphere_ScGeom,
-    InsertionSortCollider,
-    InteractionLoop,
-    Ip2_JKRMat_JKRMat_JKRWadaPhys,
-    JKRMat,
-    JKRWadaEngine,
-    Law2_ScGeom_JKRWadaPhys_JKRWada,
-    NewtonIntegrator,
-    Omega,
-    PyRunner,
-)
+from yade.wrapper import Omega
 
-import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper, so it comes first)
+import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
 from yade_scripts.run import recorder as sampling
 
 # How far, in grain radii, a grain may move before the collider looks for neighbours again: less makes it look
 # more often, more makes every step test more pairs that don't touch. Measured at 6,400 grains, a step costs
 # the same to a few per cent from 0.02 to 0.1, and an eighth more at 0.3.
 VERLET_DISTANCE = 0.1
-OF_GRAINS = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime", "grainRadius")
+OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
 OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
 OF_BOND = (
-    "shrunkRadius",
-    "neckRadius",
-    "neckLength",
-    "normalStiffness",
-    "slidingStiffness",
-    "rollingStiffness",
-    "twistingStiffness",
-    "breakingEnergy",
+    *("shrunkRadius", "neckRadius", "neckLength", "normalStiffness", "slidingStiffness"),
+    *("rollingStiffness", "twistingStiffness", "breakingEnergy"),
 )
 COLOURS = ((0.35, 0.60, 0.85), (0.90, 0.60, 0.25))
 
 
 def material_of(grains):
     """The plugin's material of materials.GrainParameters."""
-    return JKRMat(
-        young=grains.young,
-        poisson=grains.poisson,
-        density=grains.density,
-        surfaceEnergy=grains.surfaceEnergy,
-        criticalRolling=grains.criticalRolling,
-        viscoelasticTime=grains.viscoelasticTime,
-        label=grains.material,
-    )
+    return yade.JKRMat(label=grains.material, **{name: getattr(grains, name) for name in OF_MATERIAL})
 
 
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
@@ -62,23 +34,22 @@ def pair_constants(grains, neck=0.0, linearDamping=0.0):
     packings and the time unit have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond
     and shrunkRadius [m]."""
     two = 2 * (material_of(grains), grains.grainRadius)
-    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
-        linearDamping=linearDamping, slidingStiffnessFactor=grains.slidingStiffnessFactor
-    )
-    constants = {**functor.pairConstants(*two), "bond": None}
+    constants = {**_functor(grains, linearDamping).pairConstants(*two), "bond": None}
     if neck:
-        sintered = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=neck)
+        sintered = yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=neck)
         constants["bond"] = {**sintered.bondConstants(*two), "shrunkRadius": sintered.pairConstants(*two)["radius1"]}
     return constants
 
 
 def plane_constants(grains, linearDamping=0.0):
     """The same of a contact between a grain of the run and a plane of its material; no bond."""
-    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
-        linearDamping=linearDamping, slidingStiffnessFactor=grains.slidingStiffnessFactor
-    )
     material = material_of(grains)
-    return functor.pairConstants(material, grains.grainRadius, material, inf)
+    return _functor(grains, linearDamping).pairConstants(material, grains.grainRadius, material, inf)
+
+
+def _functor(grains, damping):
+    factor = grains.slidingStiffnessFactor
+    return yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, slidingStiffnessFactor=factor)
 
 
 def add_bodies(packings, velocities, material, planar=False):
@@ -105,7 +76,7 @@ def add_plane(axis, position, material, velocity=0.0):
 
 
 def start(scene, schedule, recorder):
-    """Build a run.kind.Scene and its engines: (O.steps to take, the sampling PyRunner, what to do first).
+    """Build a run.kind.Scene and its engines: (O.steps to take, the sampling PyRunner, a function to call first).
 
     The fused engine takes the steps between two samples in one O.step, and its start is sampled first. With the
     functors a sample comes at the beginning of a step, so that one more step is taken to sample the end.
@@ -115,51 +86,52 @@ def start(scene, schedule, recorder):
     omega.trackEnergy = True
     omega.dt = scene.time_step
     sampling.current = recorder
-    runner = PyRunner(command=sampling.COMMAND, iterPeriod=schedule.interval, initRun=True)
+    runner = yade.PyRunner(command=sampling.COMMAND, iterPeriod=schedule.interval, initRun=True)
     law = {"slidingStiffnessFactor": parameters.slidingStiffnessFactor, **scene.law}
     if parameters.engine == "functors":
         omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **law)
         return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
-    fused = JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **law)
+    fused = yade.JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **law)
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
-    return schedule.steps // schedule.interval, runner, lambda: (fused.prepare(), recorder.sample())
+    return schedule.samples, runner, lambda: (fused.prepare(), recorder.sample())
 
 
 def resume(scene, schedule, recorder, saved):
     """The same for the scene of a checkpoint, which has its engines and whose start has been sampled."""
-    omega = Omega()
     saved.load_scene()
     sampling.current = recorder
-    fused, runner = omega.engines[0], omega.engines[-1]
+    engines = Omega().engines
     if scene.parameters.engine == "functors":
-        return schedule.steps + 1, runner, lambda: None
-    fused.threads = scene.parameters.threads
-    return schedule.steps // schedule.interval, runner, lambda: None
+        return schedule.steps + 1, engines[-1], lambda: None
+    engines[0].threads = scene.parameters.threads
+    return schedule.samples, engines[-1], lambda: None
 
 
 def functor_engines(grain_radius, runner, limit="held", **law):
     """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole
     step."""
     return [
-        ForceResetter(),
-        InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=VERLET_DISTANCE * grain_radius),
-        InteractionLoop(
-            [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
-            [Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
-            [Law2_ScGeom_JKRWadaPhys_JKRWada(limit=limit)],
+        yade.ForceResetter(),
+        yade.InsertionSortCollider(
+            [yade.Bo1_Sphere_Aabb(), yade.Bo1_Wall_Aabb()], verletDist=VERLET_DISTANCE * grain_radius
         ),
-        NewtonIntegrator(damping=0),
+        yade.InteractionLoop(
+            [yade.Ig2_Sphere_Sphere_ScGeom(), yade.Ig2_Wall_Sphere_ScGeom()],
+            [yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
+            [yade.Law2_ScGeom_JKRWadaPhys_JKRWada(limit=limit)],
+        ),
+        yade.NewtonIntegrator(damping=0),
         runner,
     ]
 
 
 def derived(scene, schedule):
-    """What run.json calls derived: the grains' material, what follows from it and the parameters (SI)."""
+    """The entry `derived` of run.json: the grains' material, what follows from it and the parameters (SI)."""
     grains, constants = scene.parameters, scene.constants
     return {
-        **{name: getattr(grains, name) for name in OF_GRAINS},
+        **{name: getattr(grains, name) for name in (*OF_MATERIAL, "grainRadius")},
         "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
         **{name: constants[name] for name in OF_CONTACT},
         **({name: constants["bond"][name] for name in OF_BOND} if constants["bond"] else {}),

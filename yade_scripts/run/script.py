@@ -1,13 +1,23 @@
 """A run from its parameters to its run folder: what a script of a kind of run calls."""
 
 import os
+import platform
+import signal
 import sys
 import time
+from contextlib import suppress
 
+import numpy as np
+
+from analysis.printable import printable
+from analysis.progress import tqdm
 from analysis.runs.files import RunFolderError
+from analysis.version import version_text
 from yade_scripts.parameters import ParameterError
-from yade_scripts.parameters.errors import InputError, one_line_errors
-from yade_scripts.run import resuming
+from yade_scripts.parameters.errors import InputError, one_line_errors, tell
+from yade_scripts.run import checkpoint
+from yade_scripts.run.folder import RunFolder
+from yade_scripts.run.kind import Schedule
 from yade_scripts.run.parameters import gather
 from yade_scripts.stability import AUTO, require_countable
 
@@ -15,7 +25,7 @@ from yade_scripts.stability import AUTO, require_countable
 def main(kind, description):
     """Run the parameters of the command line or of yade-batch, and end the process.
 
-    kind: run.kind.Kind; description: what --help says before the parameters. To be called within YADE.
+    kind: run.kind.Kind; description: what --help prints before the parameters. To be called within YADE.
     """
     begun = time.monotonic()
     script = os.path.basename(sys.argv[0])
@@ -23,21 +33,21 @@ def main(kind, description):
         print(f"{description}\n{kind.parameters.help_text()}")
         sys.exit(0)
     if "--version" in sys.argv[1:]:
-        from analysis.version import version_text
-
         print(f"{script} {version_text()}")
         sys.exit(0)
     with one_line_errors(script):
         texts, row = gather(sys.argv[1:], kind)
         if "yade" not in sys.modules:
             raise InputError(f"must be run by YADE: yade -n -x {sys.argv[0]} velocity=3, say")
-        parameters = resuming.continued(kind, texts) if resuming.CONTINUE in texts else kind.parse(texts, row)
+        parameters = checkpoint.continued(kind, texts) if checkpoint.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 
         import contact_law  # noqa: F401  (the plugin, before its classes are needed)
 
         scene = kind.prepare(parameters, Omega().numThreads)
-        _require_finite(scene.parameters, scene.constants["timeUnit"])
+        if scene.parameters.stepFraction == AUTO:
+            raise ParameterError(f"stepFraction = {AUTO}: not measured for this kind of run; must be a number [t0]")
+        require_countable(scene.parameters.duration, scene.parameters.stepFraction, scene.constants["timeUnit"])
         folder, schedule = _open(kind, scene)
     try:
         status = _carry_out(kind, scene, schedule, folder, begun)
@@ -46,28 +56,16 @@ def main(kind, description):
     sys.exit(status)
 
 
-def _require_finite(parameters, time_unit):
-    """Raise ParameterError when a kind of run has left the step open, or the steps are too many."""
-    if parameters.stepFraction == AUTO:
-        raise ParameterError(f"stepFraction = {AUTO}: not measured for this kind of run; must be a number [t0]")
-    require_countable(parameters.duration, parameters.stepFraction, time_unit)
-
-
 def _open(kind, scene):
-    """The run folder, with its checkpoint if the run resumes from one; the Schedule, whose interval between samples is
-    then the checkpoint's."""
-    from yade_scripts.run import report
-    from yade_scripts.run.folder import RunFolder
-    from yade_scripts.run.kind import Schedule
-
-    given, interval = scene.parameters, None
+    """The run folder, with its checkpoint if the run resumes from one, and the Schedule, whose interval between
+    samples is then the checkpoint's."""
+    given = scene.parameters
     folder = RunFolder(given.out, given.overwrite, given.resume)
     saved = folder.checkpoint
     try:
         if saved:
-            differs = resuming.difference(kind, given, saved.run, but=("duration",))
-            saved.require_agreement(differs, report.made_with())
-            interval = saved.interval
+            saved.require_agreement(checkpoint.difference(kind, given, saved.run, but=("duration",)), made_with())
+        interval = saved.interval if saved else None
         schedule = Schedule.of(given.duration, scene.time_step, scene.interval, states=given.states, kept=interval)
         if saved:
             saved.require_whole()
@@ -81,37 +79,150 @@ def _open(kind, scene):
 
 def _carry_out(kind, scene, schedule, folder, begun):
     """Step the scene to its end and write the run folder; the exit status."""
-    from yade_scripts.run import loop
     from yade_scripts.run import scene as yade_scene
-    from yade_scripts.run.checkpoint import CheckpointWriter
     from yade_scripts.run.recorder import Recorder
-    from yade_scripts.run.report import Report
 
     parameters, saved = scene.parameters, folder.checkpoint
-    recorder = Recorder(folder, schedule, kind.format, scene)
-    about = {
+    begun -= saved.wallTime if saved else 0.0  # before interruptions
+    run = {
         "kind": kind.name,
         "parameters": parameters.as_dict(),
         "derived": yade_scene.derived(scene, schedule),
         "seed": parameters.as_dict().get("seed"),
+        **made_with(),
+        "hardware": hardware(),
+        "endedBy": None,
     }
-    report = Report(folder, about, begun, saved.wallTime if saved else 0.0)
+    wall_time = lambda: time.monotonic() - begun
+    write = lambda outcome: folder.write_run({**run, "wallTime": wall_time(), "outcome": outcome})
+    recorder, undecided = Recorder(folder, schedule, kind.format, scene), None
     try:
         if saved:
             recorder.resume(saved.rows, saved.columns, saved.states)
             steps, runner, begin = yade_scene.resume(scene, schedule, recorder, saved)
         else:
             steps, runner, begin = yade_scene.start(scene, schedule, recorder)
-        report.begin()
+        write("running")  # which a killed run keeps
         if scene.step_choice != "as given":
             print(f"step: {scene.step_choice}", flush=True)
-        checkpoints = CheckpointWriter(folder, report.run, recorder, report.wall_time, parameters.checkpointInterval)
-        outcome, status = loop.run(steps, recorder, runner, begin, checkpoints)
+        writer = checkpoint.CheckpointWriter(folder, run, recorder, wall_time, parameters.checkpointInterval)
+        outcome, status = _step(steps, recorder, runner, begin, writer)
         recorder.write_history()
         if outcome == "completed":
-            report.undecided, report.run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
-        if report.undecided:
-            checkpoints.save()
+            undecided, run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
+        if undecided:
+            writer.save()
     except (OSError, RuntimeError, RunFolderError) as error:  # a folder's, or a scene's that YADE can't load
-        outcome, status = f"failed: {loop.one_line(error)}", 1
-    return report.end(outcome, status, recorder.time)
+        outcome, status = f"failed: {_one_line(error)}", 1
+    run["timeReached"] = recorder.time
+    try:
+        write(outcome)
+        if outcome == "completed":
+            folder.write_ended()
+    except OSError as error:
+        if not outcome.startswith("failed"):
+            outcome, status = f"failed: {_one_line(error)}", 1
+            with suppress(OSError):
+                write(outcome)
+    if outcome == "completed" and not undecided:
+        with suppress(OSError):
+            folder.remove_checkpoint()
+    _print_end(folder.path, run, outcome, undecided, wall_time())
+    return status
+
+
+def _step(steps, recorder, runner, begin, writer):
+    """Call begin(), and step until that many O.steps are taken or the scene is at its end; (outcome, exit status).
+
+    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being taken,
+    with a checkpoint and one more step that records where it stopped; the outcome is then "interrupted". A scene from
+    a checkpoint has taken some of the steps; one that has ended before its time (recorder.finished) takes no more.
+    """
+    from yade.wrapper import Omega
+
+    omega, stop = Omega(), StopSignals()
+    tqdm.monitor_interval = 0  # no thread of its own
+    progress = tqdm(total=steps, initial=omega.iter, disable=None, leave=False, unit="step", mininterval=0.5)
+    try:
+        begin()
+        for step in range(omega.iter + 1, steps + 1):
+            omega.step()
+            progress.update()
+            if recorder.error:
+                return f"failed: {_one_line(recorder.error)}", 1
+            if recorder.finished:
+                break
+            writer.save_if_due()
+            if stop.received and step < steps:
+                writer.save()
+                recorder.ending, runner.iterPeriod = True, 1
+                omega.step()
+                return "interrupted", 128 + stop.received
+    except (RuntimeError, OSError) as error:  # from an engine, or a checkpoint that can't be written
+        recorder.write_last_good()
+        return f"failed: {_one_line(error)}", 1
+    finally:
+        progress.close()
+        stop.restore()
+    return "completed", 0
+
+
+def _print_end(path, run, outcome, undecided, seconds):
+    """The last lines of a log, and one on stderr for a failure; neither when it can't be written."""
+    if outcome.startswith("failed"):
+        tell(outcome)
+    try:
+        if run["endedBy"]:
+            print(f"ended by {run['endedBy']}")
+        if undecided:
+            longer = checkpoint.command(path, duration=2 * run["parameters"]["duration"])
+            print(f"outcome undecided: {undecided}; to continue: {longer}")
+        if outcome == "interrupted":
+            print(f"to continue: {checkpoint.command(path)}")
+        print(f"run folder: {printable(path)} ({printable(outcome)}, {seconds:.1f} s)", flush=True)
+    except OSError:  # what is left in the buffer would fail again at exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _one_line(error):
+    """The message of an exception, on one line."""
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+class StopSignals:
+    """Keeps the first of these signals in .received. A second Ctrl-C acts as it would have without this; others are
+    passed over, since a batch system may send one to each process of a job."""
+
+    def __init__(self, numbers=(signal.SIGINT, signal.SIGTERM)):
+        self.received = 0
+        self._before = {number: signal.signal(number, self._note) for number in numbers}
+
+    def restore(self):
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number, _frame):
+        self.received = self.received or number
+        if signal.SIGINT in self._before:
+            signal.signal(signal.SIGINT, self._before[signal.SIGINT])
+
+
+def made_with():
+    """The versions of the software, and the plugin's commit, for run.json. Called within YADE."""
+    import yade.config
+
+    import contact_law
+
+    versions = {"yade": yade.config.version, "python": sys.version.split()[0], "numpy": np.__version__}
+    return {"versions": {**versions, "contact_law": contact_law.__version__}, "commit": contact_law.commit}
+
+
+def hardware():
+    """{'cpu': model, 'cores': number} of this machine."""
+    model = platform.machine()
+    with suppress(OSError), open("/proc/cpuinfo") as lines:
+        names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+        model = next(names, model)
+    return {"cpu": model, "cores": os.cpu_count()}

@@ -7,13 +7,9 @@ from analysis.runs.files import write_file
 from yade_scripts.parameters.errors import InputError
 
 
-class TableError(InputError, ValueError):
-    """A table that can't be used; the message is one line: what, where, what it must be."""
-
-
 @dataclass(frozen=True)
 class Row:
-    """One line of a table: its number from 1, its description, {column: text} of what it gives."""
+    """One line of a table: its number from 1, its description, {column: text} of its cells."""
 
     line: int
     description: str
@@ -28,48 +24,43 @@ class Row:
 def read(path):
     """The rows of a table in their order: = repeats the cell above, and cells with * are left out.
 
-    Columns named !... are yade-batch's own and stay. Raises TableError when the file can't be read, a row has
+    Columns named !... are yade-batch's own and stay. Raises InputError when the file can't be read, a row has
     another number of cells than the header, two columns have one name, or there are no rows.
     """
     try:
         with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
-    except UnicodeDecodeError:
-        raise TableError(f"{path}: has bytes that are not UTF-8; must be a table of parameters") from None
-    except OSError as error:
-        raise TableError(f"{path}: {error.strerror}; must be a table of parameters") from None
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "has bytes that are not UTF-8"
+        raise InputError(f"{path}: {reason}; must be a table of parameters") from None
     used = [(number, cells) for number, cells in enumerate(lines, 1) if cells]
     if len(used) < 2:
-        raise TableError(f"{path}: no rows; must be a line of names, then rows of values")
+        raise InputError(f"{path}: no rows; must be a line of names, then rows of values")
     header = used[0][1]
+    names = [name.rstrip("!") for name in header]
     if any("," in name for name in header):
-        raise TableError(f"{path}: line {used[0][0]} has commas; names and values must be parted by blanks")
-    _require_once(path, [name.rstrip("!") for name in header])
+        raise InputError(f"{path}: line {used[0][0]} has commas; names and values must be parted by blanks")
+    for name in names:
+        if not name or names.count(name) > 1:
+            raise InputError(f"{path}: has the column {name or '!'} {names.count(name)} times; must be a name, once")
     marked = [name for name in header if name.endswith("!")] or header
     rows, above, descriptions = [], {}, set()
     for number, cells in used[1:]:
         if len(cells) != len(header):
-            raise TableError(f"{path}: line {number} has {len(cells)} cells; must be {len(header)}, one for each name")
+            raise InputError(f"{path}: line {number} has {len(cells)} cells; must be {len(header)}, one for each name")
         above = {name: above.get(name, "=") if cell == "=" else cell for name, cell in zip(header, cells)}
         if "=" in above.values():
-            raise TableError(f"{path}: line {number}: = has no row above; must be a value")
+            raise InputError(f"{path}: line {number}: = has no row above; must be a value")
         plain = {name.rstrip("!"): cell for name, cell in above.items() if cell != "*"}
-        description = plain.pop("description", None) or ",".join(
-            f'{name.rstrip("!")}={above[name]}' for name in marked
-        ).replace("'", "").replace('"', "")
+        description = plain.pop("description", None)
+        if not description:
+            description = ",".join(f'{name.rstrip("!")}={above[name]}' for name in marked)
+            description = description.replace("'", "").replace('"', "")
         if "description" not in header and description in descriptions:
             description += f"__line={number}__"
         descriptions.add(description)
         rows.append(Row(number, description, plain))
     return rows
-
-
-def _require_once(path, names):
-    for name in names:
-        if not name:
-            raise TableError(f"{path}: has a column without a name")
-        if names.count(name) > 1:
-            raise TableError(f"{path}: has the column {name} {names.count(name)} times; must be once")
 
 
 def write(path, rows, comment=""):

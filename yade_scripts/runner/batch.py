@@ -1,4 +1,4 @@
-"""Processes that run the rows of a study, and its folder for logs."""
+"""The folder of a study for logs, and processes that run its rows."""
 
 import fcntl
 import multiprocessing
@@ -8,15 +8,12 @@ import subprocess
 from contextlib import suppress
 from multiprocessing.connection import wait
 
+from yade_scripts.parameters.errors import InputError
 from yade_scripts.runner.rows import summary
 
 LOGS = os.path.join("runs", "logs")
 WORKER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "worker.py")
 NICE = 10  # as yade-batch runs its jobs
-
-
-class StudyBusy(RuntimeError):
-    """Another process runs the same study; the message is one line."""
 
 
 class StudyFolder:
@@ -33,19 +30,19 @@ class StudyFolder:
         return self.file(f"{row.name}.log")
 
     def remove_logs(self, rows):
-        """An earlier failure would still be one to --status until the row's turn comes."""
+        """Remove the logs of rows: an earlier failure would still be one to --status until the row's turn comes."""
         for row in rows:
             with suppress(FileNotFoundError):
                 os.remove(self.log(row))
 
     def lock(self):
-        """Take the study for this process and its jobs; raises StudyBusy when another has it."""
+        """Take the study for this process and its jobs; raises InputError when another has it."""
         os.makedirs(self.path, exist_ok=True)
         self.held = os.open(self.path, os.O_RDONLY)
         try:
             fcntl.flock(self.held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise StudyBusy(
+            raise InputError(
                 f"{self.path}: this study is being run by another process, or its last jobs still "
                 "are; must be one at a time (--status shows how far it is)"
             ) from None
@@ -81,7 +78,7 @@ class Batch:
             busy += row.threads
         return [worker.row for worker in self._busy()]
 
-    def wait(self, seconds):
+    def wait(self, seconds=None):
         """Return when something has happened to a row, or after so many seconds."""
         wait([worker.connection for worker in self._busy()], seconds)
 
@@ -90,10 +87,8 @@ class Batch:
         self._waiting = []
         for worker in self._busy():
             worker.stop()
-        while busy := self._busy():
-            wait([worker.connection for worker in busy])
-            for worker in busy:
-                worker.poll()
+        while self.running():
+            self.wait()
 
     def _busy(self):
         return [worker for worker in self._workers if worker.row]
@@ -135,12 +130,11 @@ class Worker:
         return self.process.poll() is None
 
     def begin(self, row, log):
-        """Have it run a row (rows.StudyRow), whose output goes to the end of the file log."""
-        self.row, self.run, self._log, self._stopped = row, None, log, False
-        arguments = [f"{name}={text}" for name, text in row.arguments.items()]
-        task = dict(
-            script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=os.path.abspath(log)
-        )
+        """Have it run a row (rows.StudyRow), which resumes if it was stopped; its output goes to the end of the log."""
+        self.row, self.run, self._log, self._stopped = row, None, os.path.abspath(log), False
+        cells = {**row.own_cells, "out": row.out, "resume": 1}
+        arguments = [f"{name}={text}" for name, text in cells.items()]
+        task = dict(script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=self._log)
         with open(log, "a"), suppress(OSError):  # a worker that has died: poll() finds out
             self.connection.send(task)
 
@@ -156,7 +150,7 @@ class Worker:
         return status
 
     def stop(self):
-        """SIGTERM to the run, as soon as there is one to hear it."""
+        """SIGTERM to the run, as soon as there is one to receive it."""
         self._stopped = True
         if self.run:
             with suppress(ProcessLookupError):

@@ -26,14 +26,14 @@ if __name__ == "__main__":
     sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 
 from analysis.printable import printable
-from analysis.runs.files import RunFolderError, write_file
+from analysis.runs.files import write_file
 from analysis.runs.lock import states_of_job, this_job
-from yade_scripts.parameters.errors import one_line_errors, tell
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
+from yade_scripts.parameters.errors import InputError, one_line_errors, tell
+from yade_scripts.run import table
 from yade_scripts.run.parameters import file_name
-from yade_scripts.run.table import read
 from yade_scripts.runner import rows
 from yade_scripts.runner.batch import Worker
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, WAITING
 
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
 BEFORE_THE_LIMIT = 60  # s
@@ -42,10 +42,6 @@ SHORT, TASK = 60, 600  # s that a row may take to share a task with others, and 
 OVER = "COMPLETED CANCELLED FAILED TIMEOUT NODE_FAIL BOOT_FAIL DEADLINE OUT_OF_MEMORY PREEMPTED".split()
 POLL = 0.1  # s
 _FOLDER = re.compile(r"slurm-(\d+)")
-
-
-class SlurmError(Exception):
-    """What Slurm refused, or what a job can't be made of; the message is one line."""
 
 
 def arrays(left):
@@ -69,10 +65,10 @@ def jobs(study_folder, left, at_once=None):
     """[(folder, rows, number of tasks, text of the script) of each job array]; nothing is written.
 
     study_folder: batch.StudyFolder; left: rows; at_once: tasks of an array at once, at most (None: as Slurm likes).
-    Raises SlurmError for a study whose name a job can't have."""
+    Raises InputError for a study whose name a job can't have."""
     name = os.path.basename(study_folder.path)
     if name != file_name(name):
-        raise SlurmError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
+        raise InputError(f"{name}: a table's name must be of letters, digits and -_.,=+ for Slurm")
     found, first = [], max(_numbers(study_folder), default=0) + 1
     for number, (group, tasks) in enumerate(arrays(left), first):
         folder = study_folder.file(f"slurm-{number}")
@@ -100,24 +96,26 @@ def command(folder, options):
 
 
 def submit(folder, group, tasks, script, options=()):
-    """Submit one of jobs(); Slurm's number of it. Raises SlurmError and OSError."""
+    """Submit one of jobs(); Slurm's number of it. Raises InputError and OSError."""
     os.makedirs(folder)
-    rows.write(os.path.join(folder, ROWS), group)
+    own = lambda row: {"description": row.name, "out": row.out}
+    cells = [{**own(row), **row.cells, "resume": 1, "!THREADS": row.threads} for row in group]
+    table.write(os.path.join(folder, ROWS), cells)
     write_file(os.path.join(folder, SCRIPT), script)
     try:
         done = subprocess.run(command(folder, options), capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except FileNotFoundError:
-        raise SlurmError("sbatch: not found; must be on a machine that submits to Slurm") from None
+        raise InputError("sbatch: not found; must be on a machine that submits to Slurm") from None
     job = done.stdout.strip().partition(";")[0]  # a cluster's name may follow
     if done.returncode or not job.isdecimal():
-        raise SlurmError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
+        raise InputError(f'sbatch: {" ".join(done.stderr.split()) or f"exit status {done.returncode}"}')
     write_file(os.path.join(folder, JOB), f"{job} {tasks}\n")
     return job
 
 
 def queued(study_folder, sure=False):
     """{(name, run folder) of a row: (its task, such as 12_3, and the task's state)} of tasks that wait or run, as
-    squeue has them. sure: raise SlurmError where it has no answer."""
+    squeue has them. sure: raise InputError where it has no answer."""
     found = {}
     for number in _numbers(study_folder):
         folder = study_folder.file(f"slurm-{number}")
@@ -126,10 +124,12 @@ def queued(study_folder, sure=False):
                 job, _, tasks = file.read().strip().partition(" ")
             states, why = states_of_job(job) if job.isdecimal() else (None, None)
             if sure and why:
-                raise SlurmError(f"squeue: {why}; must tell whether job {job} is in the queue, so nothing is submitted")
-            names = [(row.description, row.cells["out"]) for row in read(os.path.join(folder, ROWS))] if states else []
+                raise InputError(f"squeue: {why}; must tell whether job {job} is in the queue, so nothing is submitted")
+            if not states:
+                continue
+            names = [(row.description, row.cells["out"]) for row in table.read(os.path.join(folder, ROWS))]
             tasks = int(tasks or len(names))
-        except (OSError, ValueError, RunFolderError):  # being submitted, or refused by sbatch
+        except (OSError, ValueError):  # being submitted, or refused by sbatch
             continue
         for number, name in enumerate(names):
             task = f"{job}_{number % tasks + 1}"
@@ -146,7 +146,7 @@ def _numbers(study_folder):
     return sorted(int(found.group(1)) for found in map(_FOLDER.fullmatch, names) if found)
 
 
-# What Slurm runs.
+# ---- what Slurm runs ----
 
 
 def main(arguments):
@@ -158,7 +158,8 @@ def main(arguments):
     for row in own:
         status = task.run(row, os.path.join(logs, f"{row.name}.log")) or status
     if task.limit_is_near and task.came_further and task.left:
-        _queue_again()
+        # Slurm begins this task anew, which resumes from the checkpoint; scontrol prints itself why not
+        subprocess.run(["scontrol", "requeue", this_job()[0]], check=False)
     return status
 
 
@@ -210,11 +211,6 @@ class Task:
     def _note(self, number, _frame):
         self.stopped = True
         self.limit_is_near |= number == signal.SIGUSR1
-
-
-def _queue_again():
-    """The time limit is near: Slurm begins this task anew, which resumes from the checkpoint."""
-    subprocess.run(["scontrol", "requeue", this_job()[0]], check=False)  # says itself why not
 
 
 def _refuse(row, reason, status=0):

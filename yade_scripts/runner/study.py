@@ -1,4 +1,4 @@
-"""A study: the rows of a table, what has become of each, the time left, and what it looks like as text."""
+"""A study: the rows of a table, their states, the time left, and the same as text."""
 
 import os
 import shutil
@@ -7,31 +7,24 @@ import time
 from dataclasses import replace
 
 from analysis.printable import printable
-from analysis.runs.status import counts, duration_text
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, counts, duration_text
 from analysis.runs.status import line as run_line
 from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.batch import StudyFolder
-from yade_scripts.runner.rows import DONE, FAILED, RUNNING, SPEED, WAITING
 
 LINES = 15  # of a live table
-EVERY = 1.0  # s
-SHARE = 0.05  # of the time, at most, that goes into making texts
+EVERY, SHARE = 1.0, 0.05  # s between texts, and the share of the time that making them may take
 
 
 class Study:
-    """The rows of a table, their states, and the estimate of the time left."""
+    """The rows of a table, their states, and the estimate of the time left with `jobs` threads at once."""
 
     def __init__(self, table, jobs):
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.rows, self.jobs = rows.read(table), jobs
         self.folder = StudyFolder(self.name)
         self._states = [None] * len(self.rows)
-
-    def forget_failures(self):
-        """Remove the logs of rows that failed in an earlier call and may be run again."""
-        failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
-        self.folder.remove_logs(failed)
 
     def states(self):
         """[State of each row] now; a row that is done stays so."""
@@ -52,6 +45,11 @@ class Study:
                 states[number] = replace(state, note=note)
         return states, list(map(bool, tasks))
 
+    def forget_failures(self):
+        """Remove the logs of rows that failed in an earlier call and may be run again."""
+        failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
+        self.folder.remove_logs(failed)
+
     def undecided(self, states):
         """'; 3 undecided (...)' of runs that have ended with their outcome open, and so with a checkpoint; or ''."""
         done = [row for row, state in zip(self.rows, states) if state.kind == DONE]
@@ -59,6 +57,35 @@ class Study:
         if not found:
             return ""
         return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
+
+    def slowness(self, states):
+        """The time that the rows which have ended took, over the expected one; 1 before one has."""
+        ended = [
+            (state.seconds, row.expected_seconds)
+            for row, state in zip(self.rows, states)
+            if state.kind == DONE and state.seconds and row.expected_seconds
+        ]
+        return sum(real for real, _ in ended) / sum(expected for _, expected in ended) if ended else 1.0
+
+    def seconds_left(self, states):
+        """[Seconds that each row still takes], by its own pace where it has one; None where nothing is known."""
+        slow, found = self.slowness(states), []
+        for row, state in zip(self.rows, states):
+            if state.kind not in (RUNNING, WAITING):
+                found.append(0.0)
+            elif state.left is not None or row.expected_seconds is None:
+                found.append(state.left)
+            else:
+                found.append(slow * row.expected_seconds * (1 - state.progress))
+        return found
+
+    def time_left(self, states):
+        """Seconds until every row has come to its end, with no thread idle; or None."""
+        left = self.seconds_left(states)
+        if None in left:
+            return None
+        work = sum(seconds * min(row.threads, self.jobs) for row, seconds in zip(self.rows, left) if seconds)
+        return max(work / self.jobs, *left)
 
     def announce(self):
         """Print how much there is to do, and the estimate of the time."""
@@ -69,8 +96,8 @@ class Study:
         numbers = [(sum(state.kind == kind for state in states), kind) for kind in (DONE, FAILED)]
         ended = "".join(f"{number} {kind}, " for number, kind in numbers if number)
         resumed = sum(state.progress > 0 for state in left)
-        seconds = time_left(self.rows, states, self.jobs)
-        million = SPEED / slowness(self.rows, states) / 1e6
+        seconds = self.time_left(states)
+        million = rows.SPEED / self.slowness(states) / 1e6
         print(
             f"{printable(self.name)}: {len(self.rows)} rows, {ended}{len(left)} to run"
             f"{f', {resumed} of them from checkpoints' if resumed else ''}; "
@@ -79,60 +106,24 @@ class Study:
             flush=True,
         )
 
-
-def slowness(rows, states):
-    """The time that the rows which have ended took, over what was expected of them; 1 before one has."""
-    ended = [
-        (state.seconds, row.expected_seconds)
-        for row, state in zip(rows, states)
-        if state.kind == DONE and state.seconds and row.expected_seconds
-    ]
-    return sum(real for real, _ in ended) / sum(expected for _, expected in ended) if ended else 1.0
-
-
-def seconds_left(row, state, slow):
-    """Of one row, by its own pace where it has one; None where nothing is known. slow: slowness()."""
-    if state.kind not in (RUNNING, WAITING):
-        return 0.0
-    if state.left is not None or row.expected_seconds is None:
-        return state.left
-    return slow * row.expected_seconds * (1 - state.progress)
-
-
-def time_left(rows, states, jobs):
-    """Seconds until every row has come to its end, with `jobs` threads at once and none of them idle; or None."""
-    slow = slowness(rows, states)
-    left = [seconds_left(row, state, slow) for row, state in zip(rows, states)]
-    if None in left:
-        return None
-    work = sum(seconds * min(row.threads, jobs) for row, seconds in zip(rows, left) if seconds)
-    return max(work / jobs, *left)
-
-
-def headline(name, rows, states, jobs):
-    """One line: how many rows are done, running, waiting, failed, and the time left."""
-    left = time_left(rows, states, jobs)
-    return f"{printable(name)}: {counts(states)}" + ("" if left is None else f"; {duration_text(left)} left")
-
-
-def full_table(name, rows, states, jobs):
-    """Every row, and the headline below."""
-    slow = slowness(rows, states)
-    lines = [run_line(row.name, state, seconds_left(row, state, slow)) for row, state in zip(rows, states)]
-    return "\n".join([*lines, headline(name, rows, states, jobs)])
-
-
-def live_table(name, rows, states, jobs):
-    """The headline, and below it what runs, what failed, and what comes next, in at most LINES lines."""
-    order, slow = (RUNNING, FAILED, WAITING), slowness(rows, states)
-    shown = [(row, state) for kind in order for row, state in zip(rows, states) if state.kind == kind]
-    lines = [run_line(row.name, state, seconds_left(row, state, slow)) for row, state in shown[:LINES]]
-    more = [f"  and {len(shown) - LINES} more: --status shows all"] if len(shown) > LINES else []
-    return "\n".join([headline(name, rows, states, jobs), *lines, *more])
+    def table(self, states, live=False):
+        """Every row, and the headline below; live: the headline, and below it rows that run, failed, and come next,
+        in at most LINES lines."""
+        left = self.time_left(states)
+        headline = f"{printable(self.name)}: {counts(states)}"
+        headline += "" if left is None else f"; {duration_text(left)} left"
+        shown = list(zip(self.rows, states, self.seconds_left(states)))
+        if live:
+            shown = [each for kind in (RUNNING, FAILED, WAITING) for each in shown if each[1].kind == kind]
+        lines = [run_line(row.name, state, seconds) for row, state, seconds in shown[: LINES if live else None]]
+        if not live:
+            return "\n".join([*lines, headline])
+        more = [f"  and {len(shown) - LINES} more: --status shows all"] if len(shown) > LINES else []
+        return "\n".join([headline, *lines, *more])
 
 
 class Screen:
-    """draw(text) replaces what was drawn before; nothing is drawn when the stream is no terminal (.shown)."""
+    """draw(text) replaces the text before on a terminal; elsewhere nothing is drawn."""
 
     def __init__(self, stream=sys.stderr):
         self.stream, self.shown = stream, stream.isatty()
@@ -147,14 +138,13 @@ class Screen:
             self._next = begun + max(EVERY, (time.monotonic() - begun) / SHARE)
 
     def draw(self, text):
-        if not self.shown:
-            return
-        size = shutil.get_terminal_size()
-        lines = [line[: size.columns - 1] for line in text.splitlines()[: size.lines - 1]]
-        self.close()
-        self.stream.write("\n".join(lines) + "\n")
-        self.stream.flush()
-        self._lines = len(lines)
+        if self.shown:
+            size = shutil.get_terminal_size()
+            lines = [line[: size.columns - 1] for line in text.splitlines()[: size.lines - 1]]
+            self.close()
+            self.stream.write("\n".join(lines) + "\n")
+            self.stream.flush()
+            self._lines = len(lines)
 
     def close(self):
         """Remove the drawing."""

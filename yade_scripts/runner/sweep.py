@@ -10,7 +10,6 @@ import sys
 import tempfile
 import time
 from itertools import product
-from numbers import Integral
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
@@ -19,17 +18,16 @@ from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.run.parameters import CORES
-from yade_scripts.runner.study import SHARE, Study, time_left
+from yade_scripts.runner.study import SHARE, Study
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-STUDY = os.path.join(TOP, "study.py")
+STUDY = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "study.py")
 OURS = ("out", "overwrite", "resume")  # parameters that a sweep sets
 POLL = 0.5  # s
 NAMED = 3  # failures that an exception names
 
 
 class RunsFailed(RuntimeError):
-    """Runs of a sweep that failed; the message says which, and why. The others have run, and stay."""
+    """Runs of a sweep that failed; the message names them, and why. The others have run, and stay."""
 
 
 def collide(folder="runs", jobs=None, **parameters):
@@ -68,19 +66,15 @@ def compress(folder="runs", jobs=None, **parameters):
 
 
 def _sweep(kind, script, parameters, folder, jobs):
-    if jobs is not None and (isinstance(jobs, bool) or not (isinstance(jobs, Integral) and jobs >= 1)):
+    jobs, folder = CORES if jobs is None else jobs, os.fspath(folder)
+    if jobs < 1:
         raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
-    if not isinstance(folder, (str, os.PathLike)) or os.fspath(folder) == "":
-        raise ParameterError(f"folder = {folder}: must be a path; parameters are given by name, velocity=3")
-    rows = _rows(kind, script, parameters, os.fspath(folder))
+    rows = _rows(kind, script, parameters, folder)
     name = hashlib.sha256(repr(rows).encode()).hexdigest()[:8]
     file = os.path.join(folder, f"{kind.name}-{name}.table")
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        raise ParameterError(f"folder = {folder}: {error.strerror}; must be a folder that can be written") from None
+    os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(file, jobs or CORES)
+    _run(Study(file, jobs), file)
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -88,7 +82,7 @@ def _rows(kind, script, parameters, folder):
     """[{column: text}] of a table, checked."""
     for name in OURS:
         if name in parameters:
-            raise ParameterError(f"{name}: is the sweep's own; must be left out (folder says where the runs go)")
+            raise ParameterError(f"{name}: is the sweep's own; must be left out (folder is where the runs go)")
     rows, folder, columns = {}, _text("folder", folder), kind.parameters.columns()
     for values in product(*map(_listed, parameters, parameters.values())):
         given = {name: value for name, value in zip(parameters, values) if value is not None}
@@ -119,46 +113,33 @@ def _text(name, value, column=None):
     return text
 
 
-def _run(file, jobs):
-    """Have study.py run a table; RunsFailed unless all its runs have ended."""
-    command = [sys.executable, STUDY, file, "-j", str(jobs)]
-    of_table = Study(file, jobs)
-    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+def _run(study, file):
+    """Have study.py run a table, with a bar meanwhile; RunsFailed unless all its runs have ended."""
+    study.announce()
+    command = [sys.executable, STUDY, file, "-j", str(study.jobs)]
+    with tempfile.TemporaryFile("w+") as errors, bar(len(study.rows), "runs") as shown:
         # In a session of its own, so that Ctrl-C reaches it once, and by us.
-        study = subprocess.Popen(
-            command, stdout=output, stderr=errors, stdin=subprocess.DEVNULL, start_new_session=True
-        )
+        pipes = dict(stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
+        process = subprocess.Popen(command, start_new_session=True, **pipes)
         try:
-            printed = _wait(study, output.fileno(), of_table)
+            over = False
+            while not over:
+                begun = time.monotonic()
+                over = process.poll() is not None  # first, so that runs which have ended meanwhile are shown
+                states = study.states()
+                left = study.time_left(states)
+                text = "time left unknown" if left is None else f"{duration_text(left)} left"
+                shown.set_postfix_str(text, refresh=False)
+                shown.update(sum(state.progress for state in states) - shown.n)
+                time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
         except BaseException:
-            study.send_signal(signal.SIGINT)
-            study.wait()
+            process.send_signal(signal.SIGINT)
+            process.wait()
             raise
         errors.seek(0)
         lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
-    undecided = of_table.undecided(of_table.states())
-    if undecided not in printed:
-        print(f"{len(of_table.rows)} runs{undecided}")
-    if study.returncode:
+    if undecided := study.undecided(states):
+        print(f"{len(study.rows)} runs{undecided}")
+    if process.returncode:
         more = f", and {len(lines) - NAMED} more" if len(lines) > NAMED else ""
-        raise RunsFailed("; ".join(lines[:NAMED]) + more or f"{file}: study.py ended with status {study.returncode}")
-
-
-def _wait(process, output, study):
-    """Show how far the runs are until study.py has ended; its estimate comes first, which is returned."""
-    printed = ""
-    with bar(len(study.rows), "runs") as shown:
-        over = False
-        while not over:
-            begun = time.monotonic()
-            over = process.poll() is not None  # first, so that what has ended meanwhile is shown
-            text = "" if printed else os.pread(output, 10_000, 0).decode()
-            if "\n" in text:
-                printed = text
-                shown.write(text.rstrip("\n"))
-            states = study.states()
-            left = time_left(study.rows, states, study.jobs)
-            shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
-            shown.update(sum(state.progress for state in states) - shown.n)
-            time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
-    return printed
+        raise RunsFailed("; ".join(lines[:NAMED]) + more or f"{file}: study.py ended with {process.returncode}")

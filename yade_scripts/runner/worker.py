@@ -22,8 +22,6 @@ LOADED = (
     "yade_scripts.experiments.collision",
     "yade_scripts.experiments.compression",
     "yade_scripts.packings.ballistic_hits",
-    "yade_scripts.run.folder",
-    "yade_scripts.run.report",
     "yade_scripts.run.scene",
     "yade_scripts.run.script",
     "multiprocessing.synchronize",
