@@ -149,7 +149,10 @@ def _collided(scene):
         materials.append(parameters.changed(**SOFT))
         kind = np.random.default_rng(parameters.seed).integers(2, size=sum(numbers))
     time_unit = min(pair_constants(one, (r, r))["timeUnit"] for one in materials for r in np.unique(radius))
-    parameters = collision.with_duration(parameters, time_unit, first_touch(*pair, velocities[1] - velocities[0]))
+    if parameters.duration is None:
+        touch = first_touch(*pair, velocities[1] - velocities[0])
+        duration = collision.default_duration(parameters, parameters.radius, time_unit, touch or 0.0)
+        parameters = parameters.changed(duration=duration)
     position, velocity = np.concatenate([packing.position for packing in pair]), np.repeat(velocities, numbers, axis=0)
     step, planar = parameters.stepFraction * time_unit, bool(parameters.planar)
     made = scene_file.start(position, velocity, radius, materials, step, kind, neck=parameters.neck, planar=planar)

@@ -151,7 +151,7 @@ WRONG = [
     ("", UM, "empty"),
     ("x,y,z\n", UM, "0 rows of numbers"),
     ("x,y,z\n0,0,0\n", UM, "holds 1 grains"),
-    *((LINE.replace("0.2", cell), UM, "x of grain 1 is") for cell in ("nan", "1e300")),
+    *((LINE.replace("0.2", cell), UM, "position: must be ") for cell in ("nan", "1e300")),
     (LINE.replace("0.2", "wide"), UM, "not a table of numbers"),
     ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y"),
     ("1 0 0 0 5\n2 0.2 0 0 5\n", UM, "names=-,x,y,z,-,radius"),
@@ -161,7 +161,7 @@ WRONG = [
     (LINE, dict(radius="0.1"), "as with unit=cm or unit=mm or unit=um"),
     (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file"),
     (WITH_RADII.format("0.1"), UM, "has radii of its own"),
-    (WITH_RADII.format("-1"), dict(unit="um"), "radius of grain 1 is -1"),
+    (WITH_RADII.format("-1"), dict(unit="um"), "radius: must be > 0, found -1"),
     ("2\nno grains\nC 0 0 0\n", UM, "1 rows of numbers; must be 2"),
     (DUMP.format(n="all"), UM, "line 4: 'all' grains"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9"),
@@ -185,8 +185,8 @@ def test_what_is_wrong_gives_one_line(tmp_path, capfd, text, given, message):
     "arrays, message",
     [
         (dict(position=np.array([{}] * 2), radius=np.ones(2)), "Object arrays cannot be loaded"),
-        (dict(position=np.ones((2, 2)), radius=np.ones(2)), "positions have the shape (2, 2)"),
-        (dict(position=np.ones((2, 3)), radius=np.ones(3)), "radius has the shape (3,)"),
+        (dict(position=np.ones((2, 2)), radius=np.ones(2)), "position: must have the shape (any, 3)"),
+        (dict(position=np.ones((2, 3)), radius=np.ones(3)), "radius: must have the shape (2)"),
     ],
 )
 def test_what_is_wrong_with_arrays(tmp_path, arrays, message):

@@ -170,21 +170,16 @@ def test_drag_and_dense_packings_lower_the_stable_step():
 
 
 def test_runs_without_an_end_are_refused():
-    for texts in ({"duration": "1e10"}, {"duration": 1e-9, "stepFraction": 1e-300}):
-        with refused(ParameterError, "duration = ", "must be at most 1e+09 steps"):
-            complete(texts)
-    with pytest.raises(ParameterError, match=r"duration = .* must be at most 1e\+09 steps"):
-        collision.with_duration(complete({"stepFraction": 1e-12}), ICE_PAIR["timeUnit"], 0.0)
-    longest = 1e9 * 0.1 * ICE_PAIR["timeUnit"]
-    assert complete({"duration": 0.999 * longest}).duration == 0.999 * longest
+    stability.require_countable(0.999, 1e-9)
+    for time_step in (0.999e-9, 0.0):
+        with refused(ParameterError, "duration = 1: ", "must be at most 1e+09 steps"):
+            stability.require_countable(1.0, time_step)
 
 
-def test_the_default_duration_is_that_of_the_paper_and_a_given_one_stays():
+def test_the_default_duration_is_that_of_the_paper():
     """Counted from the first touch: test_collide.py."""
-    given = complete({"radius": 30})
-    found = collision.with_duration(given, ICE_PAIR["timeUnit"], 5e-8).duration
+    found = collision.default_duration(complete({"radius": 30}), 30, ICE_PAIR["timeUnit"], 5e-8)
     assert found - 5e-8 == pytest.approx(12.5e-9 * 30, rel=1e-3)
-    assert collision.with_duration(given.changed(duration=1e-9), ICE_PAIR["timeUnit"], None).duration == 1e-9
 
 
 def test_threads_of_the_functors_are_those_of_yade_and_of_the_engine_its_own():

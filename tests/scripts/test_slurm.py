@@ -4,12 +4,11 @@ the real one."""
 import os
 import signal
 from math import ceil
-from multiprocessing.pool import ThreadPool
 
 import pytest
-from running import PYTHON, TOP, study, wait_for
+from running import PYTHON, TOP, read_json, start, study, wait_for
 
-from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State
+from analysis.runs.status import WAITING, State
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm
 
@@ -115,81 +114,56 @@ def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
     assert done.returncode == 2 and NOT_SUBMITTED[arguments] in done.stderr.splitlines()[-1]
 
 
-STOPS = """
-import sys, time
-from yade_scripts.run.script import StopSignals
-stop = StopSignals()
-print("begun", flush=True)
-while not stop.received:
-    time.sleep(0.02)
-time.sleep(0.5)
-print("checkpoint", flush=True)
-sys.exit(128 + stop.received)
-"""
-
-
 @pytest.fixture
-def signals():
-    """What a task does to this process's signals is undone."""
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
-    yield
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
-
-
-@pytest.mark.parametrize(
-    "number, to_all", [(signal.SIGUSR1, False), (signal.SIGTERM, False), (signal.SIGTERM, True)], ids=str
-)
-def test_a_signal_has_the_run_write_its_checkpoint(tmp_path, signals, number, to_all):
-    """One to the task alone, or to all processes of the job."""
-    log, script, task = tmp_path / "a.log", tmp_path / "script.py", slurm.Task()
-    script.write_text(STOPS)
-    row = rows.StudyRow("a", {}, str(script), KIND, KIND.parse({"threads": "2", "out": "run"}))
-    running = ThreadPool(1).apply_async(task._run, (row, str(log)))
-    lines = lambda: log.read_text().splitlines() if log.exists() else []
-    wait_for(lambda: "begun" in lines() and task._worker.run)
-    for process in (task._worker.process.pid, task._worker.run) if to_all else ():
-        os.kill(process, number)
-    os.kill(os.getpid(), number)
-    assert running.get(60) == 143 and task.limit_is_near == (number == signal.SIGUSR1)
-    assert lines()[-1] == "checkpoint"
-    task._worker.close()
-
-
-@pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])
-def test_a_task_at_its_limit_is_put_into_the_queue_again_if_it_came_further(
-    tmp_path, program, monkeypatch, signals, progress, requeued
-):
-    """Otherwise it would begin anew for ever."""
+def task(tmp_path, program, monkeypatch):
+    """The folder of a task of Slurm, 12_3, in which scontrol notes what it is called with."""
     (tmp_path / "logs" / "slurm-1").mkdir(parents=True)
-    write_table(tmp_path, ONE + "b 5 10 1 b\n", "logs/slurm-1/rows.table")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SLURM_ARRAY_JOB_ID", "12")
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "3")
     program("scontrol", 'echo "$@" > scontrol')
+    return "logs/slurm-1/rows.table"
+
+
+def test_a_task_at_its_limit_writes_a_checkpoint_and_is_put_into_the_queue_again(tmp_path, task):
+    header = "description radius velocity duration checkpointInterval threads out\n"
+    write_table(tmp_path, header + "ends 4 30 1e-9 1 1 ends\nlong 10 10 5e-6 0.1 2 long\n", task)
+    process = start(tmp_path, PYTHON, slurm.__file__, task, "1", "1")
+    wait_for((tmp_path / "long" / "checkpoint" / "recorder.npz").exists)
+    process.send_signal(signal.SIGUSR1)
+    output, errors = process.communicate(timeout=60)
+    assert process.returncode == 128 + signal.SIGUSR1 and errors == ""
+    ends, long = output.splitlines()
+    assert ends == "ends: done" and long.startswith("long: waiting checkpoint at ")
+    assert (tmp_path / "scontrol").read_text() == "requeue 12_3\n"
+    assert read_json(tmp_path, "long", "run.json")["outcome"] == "interrupted"
+
+
+class Stopped:
+    """In the place of a Batch: the time limit is near."""
+
+    def __init__(self, *_, **__):
+        os.kill(os.getpid(), signal.SIGUSR1)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def running(self):
+        return ["a"]
+
+
+@pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])
+def test_a_task_that_came_no_further_is_not_put_into_the_queue_again(tmp_path, monkeypatch, task, progress, requeued):
+    """It would begin anew for ever."""
+    write_table(tmp_path, ONE, task)
     states = iter([State(WAITING, 0.1), State(WAITING, progress, note="checkpoint")])
-    monkeypatch.setattr(rows, "state", lambda *_, **__: next(states))
-
-    def stopped(task, *_):
-        task._note(signal.SIGUSR1, None)
-        return 143
-
-    monkeypatch.setattr(slurm.Task, "_run", stopped)
-    assert slurm.main(["logs/slurm-1/rows.table", "1", "1"]) == 143  # of the second row no state is asked
-    asked = tmp_path / "scontrol"
-    assert asked.read_text() == "requeue 12_3\n" if requeued else not asked.exists()
-
-
-def test_a_row_that_ended_or_runs_elsewhere_is_not_run(tmp_path, capsys, monkeypatch):
-    write_table(tmp_path, ONE, "rows.table")
-    monkeypatch.setattr(slurm.Task, "_run", None)
-    for state, status, text in (
-        (State(DONE, 1.0), 0, "a: has ended before\n"),
-        (State(RUNNING, host="node7", note="on node7"), 1, "slurm.py: a: is running on node7\n"),
-        (State(FAILED, note="holds another"), 1, "slurm.py: a: holds another\n"),
-    ):
-        monkeypatch.setattr(rows, "state", lambda *_, state=state: state)
-        monkeypatch.setattr(rows, "refusal", lambda _, state=state: state.note or None)
-        assert slurm.main([str(tmp_path / "rows.table"), "1", "1"]) == status
-        printed = capsys.readouterr()
-        assert printed.out + printed.err == text
+    monkeypatch.setattr(rows, "state", lambda *_: next(states))
+    monkeypatch.setattr(slurm, "Batch", Stopped)
+    handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
+    assert slurm.main([task, "1", "1"]) == 128 + signal.SIGUSR1
+    for number, handler in handlers.items():
+        signal.signal(number, handler)
+    assert (tmp_path / "scontrol").exists() == requeued

@@ -69,8 +69,7 @@ def test_a_row_has_the_bits_of_a_process_of_its_own(one_worker, tmp_path, name):
 @pytest.fixture
 def run_all(tmp_path):
     """run_all([(threads, script), ...], at once): has a Batch run these; its StudyFolder."""
-    folder = StudyFolder("any")
-    folder.path, folder.held = str(tmp_path), os.open(tmp_path, os.O_RDONLY)
+    folder = StudyFolder(str(tmp_path))
 
     def run_all(scripts, at_once):
         made = []
@@ -84,8 +83,7 @@ def run_all(tmp_path):
                 batch.wait(1)
         return [failure(folder.log(row), row.out) for row in made]
 
-    yield run_all
-    os.close(folder.held)
+    return run_all
 
 
 def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, run_all):

@@ -14,7 +14,7 @@ from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
 from analysis.runs.measured import outcome_of_run
-from yade_scripts import packings, stability, step_choice
+from yade_scripts import packings, step_choice
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
@@ -141,7 +141,9 @@ def prepare(parameters, threads):
         packings.require_connected(packing)
     collision_step.require_step_of_files(parameters, constants, pair)
     touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
-    parameters = with_duration(parameters, constants["timeUnit"], touch)
+    if parameters.duration is None:
+        duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)
+        parameters = parameters.changed(duration=duration)
     aggregate_radius = parameters.radius * parameters.grainRadius
     controls, reason = [], step_choice.reason(parameters, collision_step.step_limit(parameters, constants))
     if parameters.impactStepFraction is not None:
@@ -253,15 +255,6 @@ def default_duration(parameters, radius, time_unit, touch):
     """
     way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
     return touch + max(rebound_time(radius, time_unit), way)
-
-
-def with_duration(parameters, time_unit, touch):
-    """The parameters with a duration; touch: time of the first touch [s], None for aggregates that pass each other."""
-    if parameters.duration is not None:
-        return parameters
-    duration = default_duration(parameters, parameters.radius, time_unit, touch or 0.0)
-    stability.require_countable(duration, parameters.stepFraction, time_unit)
-    return parameters.changed(duration=duration)
 
 
 def series(state, aggregate_radius):

@@ -32,8 +32,6 @@ def complete(parameters, constants, threads):
     parameters = parameters.changed(stepFraction=step(parameters, constants))
     sintered = "neck, filling and drag" if parameters.neck else "filling and drag"
     stability.require_stable(parameters.stepFraction, limit, sintered)
-    if parameters.duration is not None:
-        stability.require_countable(parameters.duration, parameters.stepFraction, constants["timeUnit"])
     return parameters.with_threads(threads)
 
 

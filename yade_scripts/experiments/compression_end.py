@@ -6,7 +6,6 @@ from math import log
 import numpy as np
 
 from analysis.measures.periodic_cell import AVERAGED, pressure_at_end
-from yade_scripts import stability
 from yade_scripts.parameters import ParameterError
 from yade_scripts.parameters.errors import tell
 
@@ -96,14 +95,7 @@ def with_start(parameters, time_unit):
         )
     if parameters.duration is not None:
         return parameters
-    duration, step = longest_duration(parameters, time_unit), parameters.stepFraction
-    steps = duration / (step * time_unit)
-    if steps > stability.MOST_STEPS:
-        raise ParameterError(
-            f"strainRate = {rate:g}: {steps:.2g} steps of {step:g} t0; must be at least "
-            f"{rate * steps / stability.MOST_STEPS:.2g} [1/t0], for {stability.MOST_STEPS:g} steps"
-        )
-    return parameters.changed(duration=duration)
+    return parameters.changed(duration=longest_duration(parameters, time_unit))
 
 
 def shrinking_rate(parameters, time_unit):

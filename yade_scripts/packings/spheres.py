@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from analysis.arrays import numbers
 from analysis.runs.files import RunFolderError, array_names, read_arrays
 from analysis.runs.folder import LARGEST
 from yade_scripts.packings.packing import PackingError
@@ -312,21 +313,11 @@ def _columns(names, axes="xyz"):
 def _spheres(kind, by_name, position=None, unit=None):
     """Spheres of arrays (N,) by the names of COLUMNS; position (N, 3) in place of x, y, z."""
     if position is None:
-        position = np.stack([by_name.pop(axis) for axis in "xyz"], axis=-1)
-    if position.ndim != 2 or position.shape[1] != 3:
-        raise ValueError(f"positions have the shape {position.shape}; must be (N, 3)")
-    for name, array in {**dict(zip("xyz", position.T)), **by_name}.items():
-        if array.shape != (len(position),):
-            raise ValueError(f"{name} has the shape {array.shape}, of {len(position)} grains; must be (N,)")
-        if array.dtype.kind not in "fiu":
-            raise ValueError(f"{name} is no finite number; must be one")
-        for grain in np.flatnonzero(~(np.abs(array) < LARGEST))[:1]:
-            raise ValueError(f"{name} of grain {grain} is {array[grain]:g}; must be a finite number below {LARGEST:g}")
-    radius, sizes = by_name.get("radius"), "with radii"
-    if radius is None and "diameter" in by_name:
-        radius, sizes = by_name["diameter"] / 2, "with diameters"
-    if radius is None:
-        sizes = "without radii"
-    elif len(radius) and radius.min() <= 0:
-        raise ValueError(f"radius of grain {radius.argmin()} is {radius.min():g}; must be > 0")
-    return Spheres(position, radius, f"{kind}, {sizes}", unit)
+        position = np.stack([by_name[axis] for axis in "xyz"], axis=-1)
+    numbers("position", position, (None, 3), least=-LARGEST, most=LARGEST)
+    name = next((name for name in ("radius", "diameter") if name in by_name), None)
+    if name is None:
+        return Spheres(position, None, f"{kind}, without radii", unit)
+    sizes = numbers(name, by_name[name], (len(position),), positive=True, most=LARGEST)
+    radius = sizes / 2 if name == "diameter" else by_name[name]
+    return Spheres(position, radius, f"{kind}, with {'radii' if name == 'radius' else 'diameters'}", unit)

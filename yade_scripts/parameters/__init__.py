@@ -60,40 +60,19 @@ def one_of(names):
     return Check(" or ".join(names), lambda text: text in names)
 
 
-def parameter(default, check, meaning, unit="", word=None, of_consequence=True, usual=None):
-    """A field of Parameters; its annotation is the type (float, int or str, or one of them with None).
-
-    Parameters
-    ----------
-    default
-        None: it follows from the others.
-    check : Check
-    meaning, unit : str
-        For the help text.
-    word : str, optional
-        A text that a number's column may hold as well.
-    of_consequence : bool
-        Whether results depend on it.
-    usual : Usual, optional
-        A range outside of which `unusual=1` must be given too.
-    """
-    about = dict(check=check, meaning=meaning, unit=unit, word=word, of_consequence=of_consequence, usual=usual)
-    return field(default=default, metadata=about)
-
-
 @dataclass(frozen=True)
 class Column:
-    """A field of Parameters, or the column of a table."""
+    """A field of Parameters, or the column of a table; type and name are those of the field."""
 
-    name: str
-    kind: type
-    default: Any
+    default: Any  # None: it follows from the others
     check: Check
-    meaning: str
-    unit: str
-    word: str | None
-    of_consequence: bool
-    usual: Usual | None
+    meaning: str  # for the help text
+    unit: str = ""
+    word: str | None = None  # a text that a number's column may hold as well
+    of_consequence: bool = True  # whether results depend on it
+    usual: Usual | None = None  # a range outside of which unusual=1 must be given too
+    name: str = ""
+    kind: type = str
 
     def value(self, text):
         """The checked value of a text or number; raises ParameterError."""
@@ -198,10 +177,15 @@ class Parameters:
         return {name: getattr(self, name) for name in self.columns()}
 
 
-def _column(described):
-    kinds = [kind for kind in typing.get_args(described.type) or (described.type,) if kind is not type(None)]
+def parameter(default, check, meaning, unit="", **more):
+    """A field of Parameters, described as by Column; its annotation is the type: float, int or str, or with None."""
+    return field(default=default, metadata={"column": Column(default, check, meaning, unit, **more)})
+
+
+def _column(of):
+    kinds = [kind for kind in typing.get_args(of.type) or (of.type,) if kind is not type(None)]
     kind = next((kind for kind in kinds if kind is not str), str)
-    return Column(described.name, kind, described.default, **described.metadata)
+    return replace(of.metadata["column"], name=of.name, kind=kind)
 
 
 def _unquoted(text):

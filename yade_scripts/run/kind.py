@@ -8,6 +8,7 @@ import numpy as np
 
 from analysis.runs.format import RunKind
 
+FEWEST_SAMPLES = 300
 MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
 
@@ -82,13 +83,13 @@ class Schedule:
         return self.steps // self.interval
 
     @classmethod
-    def of(cls, duration, time_step, interval=50, fewest_samples=300, states=22, kept=None):
-        """At most `interval` steps between samples, and at least `fewest_samples` if the steps suffice.
+    def of(cls, duration, time_step, interval=50, states=22, kept=None):
+        """At most `interval` steps between samples, and at least FEWEST_SAMPLES if the steps suffice.
 
         Runs of more than MOST_SAMPLES intervals are sampled less often. kept: the interval of a run that is continued.
         """
         steps = max(1, ceil(duration / time_step * (1 - 1e-12)))
-        interval = kept or max(1, min(interval, steps // fewest_samples), ceil(steps / MOST_SAMPLES))
+        interval = kept or max(1, min(interval, steps // FEWEST_SAMPLES), ceil(steps / MOST_SAMPLES))
         samples = ceil(steps / interval)
         chosen = np.linspace(0, samples, states).round().astype(int)
         return cls(samples * interval, interval, frozenset(int(number) for number in chosen))

@@ -47,7 +47,7 @@ def main(kind, description):
         scene = kind.prepare(parameters, Omega().numThreads)
         if scene.parameters.stepFraction == AUTO:
             raise ParameterError(f"stepFraction = {AUTO}: not measured for this kind of run; must be a number [t0]")
-        require_countable(scene.parameters.duration, scene.parameters.stepFraction, scene.constants["timeUnit"])
+        require_countable(scene.parameters.duration, scene.time_step)
         folder, schedule = _open(kind, scene)
     try:
         status = _carry_out(kind, scene, schedule, folder, begun)

@@ -17,11 +17,10 @@ NICE = 10  # as yade-batch runs its jobs
 
 
 class StudyFolder:
-    """runs/logs/NAME: a log for each row."""
+    """The folder of a study, LOGS/NAME: a log for each row."""
 
-    def __init__(self, name):
-        self.path = os.path.join(LOGS, name)
-        self.held = None
+    def __init__(self, path):
+        self.path, self.held = path, None
 
     def file(self, name):
         return os.path.join(self.path, name)
@@ -52,8 +51,8 @@ class Batch:
     """Rows at work, as many at once as `threads` allows, by workers in sessions of their own: Ctrl-C reaches this
     process alone."""
 
-    def __init__(self, folder, rows, threads):
-        self._folder, self._threads = folder, threads
+    def __init__(self, folder, rows, threads, nice=NICE):
+        self._folder, self._threads, self._nice = folder, threads, nice
         self._waiting, self._workers = list(rows), []
         folder.remove_logs(rows)
 
@@ -97,10 +96,7 @@ class Batch:
         """A worker without a row; a new one, whose start is in the log, when all are busy."""
         free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
         if not free:
-            # Workers inherit the study's lock: it is free again when the last of them has ended, even if this process
-            # is killed.
-            of_process = dict(start_new_session=True, pass_fds=[self._folder.held])
-            free.append(Worker(log, [f"--nice={NICE}"], **of_process))
+            free.append(Worker(log, self._nice, self._folder.held))
             self._workers += free
         return free[0]
 
@@ -109,20 +105,20 @@ class Worker:
     """A process of YADE that runs rows one after another (worker.py), idle until it is given one.
 
     It is started without a shell: names are never anything else than names. log: the file to which YADE's own
-    messages go as it starts; options: more of yade's; process: more of subprocess.Popen's."""
+    messages go as it starts; lock: the study's, or None, which is free again when the last worker has ended."""
 
-    def __init__(self, log, options=(), pass_fds=(), **process):
+    def __init__(self, log, nice, lock):
         self.row = self.run = None
         self.connection, theirs = multiprocessing.Pipe()
         with open(log, "a") as output, theirs:
             self.process = subprocess.Popen(
-                ["yade", "-n", *options, "-x", WORKER, str(theirs.fileno())],
+                ["yade", "-n", f"--nice={nice}", "-x", WORKER, str(theirs.fileno())],
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 stdin=subprocess.DEVNULL,
                 env={**os.environ, "DISPLAY": ""},
-                pass_fds=(*pass_fds, theirs.fileno()),
-                **process,
+                pass_fds=[theirs.fileno(), *([] if lock is None else [lock])],
+                start_new_session=True,
             )
 
     def is_alive(self):

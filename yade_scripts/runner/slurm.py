@@ -8,8 +8,8 @@ a task printed. The logs of the runs are where a local runner has them. Slurm st
 
 A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1,
 which Slurm sends before the time limit, has the run write its checkpoint; if a run has come further in this task, the
-task is put into the queue again. Exit status: 0 when all runs have ended, that of the last one that failed, 1 when
-one can't be run, 128 and more when it was stopped."""
+task is put into the queue again. Exit status: 0 when all runs have ended, 1 when one has not, 128 and the signal's
+number when stopped."""
 
 import os
 import re
@@ -17,10 +17,8 @@ import shlex
 import signal
 import subprocess
 import sys
-from contextlib import suppress
 from itertools import groupby
 from math import ceil
-from multiprocessing.connection import wait
 
 if __name__ == "__main__":
     sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
@@ -32,8 +30,9 @@ from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from yade_scripts.parameters.errors import InputError, one_line_errors, tell
 from yade_scripts.run import table
 from yade_scripts.run.parameters import file_name
+from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import rows
-from yade_scripts.runner.batch import Worker
+from yade_scripts.runner.batch import Batch, StudyFolder
 
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
 BEFORE_THE_LIMIT = 60  # s
@@ -151,71 +150,26 @@ def _numbers(study_folder):
 
 def main(arguments):
     path, number, tasks = arguments[0], int(arguments[1]), int(arguments[2])
+    stop = StopSignals((signal.SIGUSR1, signal.SIGTERM, signal.SIGINT))
+    folder = StudyFolder(os.path.dirname(os.path.dirname(path)))
+    states = lambda: [rows.state(row, folder.log(row)) for row in own]
     with one_line_errors("slurm.py"):
         own = rows.read(path)[number - 1 :: tasks]
-    logs, task = os.path.dirname(os.path.dirname(path)), Task()
-    status = 0
-    for row in own:
-        status = task.run(row, os.path.join(logs, f"{row.name}.log")) or status
-    if task.limit_is_near and task.came_further and task.left:
+    before = states()
+    may_run = [row for row, state in zip(own, before) if state.kind in (WAITING, FAILED) and not rows.refusal(row)]
+    with Batch(folder, may_run, threads=1, nice=0) as batch:  # one after another
+        while batch.running() and not stop.received:
+            batch.wait(POLL)
+    after = states()
+    for row, state in zip(own, after):
+        where = f" on {state.host}" if state.kind == RUNNING else ""
+        tell_or_print = tell if state.kind in (FAILED, RUNNING) else print
+        tell_or_print(printable(f"{row.name}: {state.kind}{where} {state.note}".rstrip()))
+    came_further = any(now.progress > then.progress for now, then in zip(after, before))
+    if stop.received == signal.SIGUSR1 and came_further and any(state.kind == WAITING for state in after):
         # Slurm begins this task anew, which resumes from the checkpoint; scontrol prints itself why not
         subprocess.run(["scontrol", "requeue", this_job()[0]], check=False)
-    return status
-
-
-class Task:
-    """Runs rows until a signal comes. .limit_is_near: it was SIGUSR1; .came_further: whether a run has come further;
-    .left: whether there is something left to do."""
-
-    def __init__(self):
-        self.stopped = self.limit_is_near = self.came_further = self.left = False
-        self._worker = None
-        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
-            signal.signal(number, self._note)
-
-    def run(self, row, log):
-        """Run a row unless it has ended, must not be run, or a signal has come; the exit status."""
-        if self.stopped:
-            self.left = True
-            return 0
-        refused, before = rows.refusal(row), rows.state(row, log)
-        if before.kind == DONE:
-            print(f"{row.name}: has ended before", flush=True)
-            return 0
-        if before.kind == RUNNING:
-            return _refuse(row, f"is running on {before.host}")
-        if refused:
-            return _refuse(row, refused)
-        status, after = self._run(row, log), rows.state(row, log)
-        self.came_further |= after.progress > before.progress
-        self.left |= after.kind == WAITING
-        if after.kind == FAILED:
-            return _refuse(row, after.note, status)
-        print(printable(f"{row.name}: {after.kind} {after.note}".rstrip()), flush=True)
-        return status or int(after.kind != DONE)
-
-    def _run(self, row, log):
-        with suppress(FileNotFoundError):
-            os.remove(log)  # of a run before the task was queued again
-        if not self._worker or not self._worker.is_alive():
-            self._worker = Worker(log)
-        self._worker.begin(row, log)
-        passed_on = False
-        while (status := self._worker.poll()) is None:
-            wait([self._worker.connection], POLL)
-            if self.stopped and not passed_on:
-                self._worker.stop()
-                passed_on = True
-        return status
-
-    def _note(self, number, _frame):
-        self.stopped = True
-        self.limit_is_near |= number == signal.SIGUSR1
-
-
-def _refuse(row, reason, status=0):
-    tell(f"{row.name}: {reason}", "slurm.py")
-    return status or 1
+    return 128 + stop.received if stop.received else int(any(state.kind != DONE for state in after))
 
 
 if __name__ == "__main__":

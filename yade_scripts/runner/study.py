@@ -11,7 +11,7 @@ from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, counts, duratio
 from analysis.runs.status import line as run_line
 from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
-from yade_scripts.runner.batch import StudyFolder
+from yade_scripts.runner.batch import LOGS, StudyFolder
 
 LINES = 15  # of a live table
 EVERY, SHARE = 1.0, 0.05  # s between texts, and the share of the time that making them may take
@@ -23,7 +23,7 @@ class Study:
     def __init__(self, table, jobs):
         self.name = os.path.splitext(os.path.basename(table))[0]
         self.rows, self.jobs = rows.read(table), jobs
-        self.folder = StudyFolder(self.name)
+        self.folder = StudyFolder(os.path.join(LOGS, self.name))
         self._states = [None] * len(self.rows)
 
     def states(self):
