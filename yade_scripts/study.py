@@ -24,7 +24,7 @@ import argparse
 import os
 import signal
 import sys
-import time
+from contextlib import closing
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -39,14 +39,12 @@ from yade_scripts.parameters.errors import InputError, tell
 from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
-from yade_scripts.runner.batch import LOGS, Batch
+from yade_scripts.runner.batch import LOGS
 from yade_scripts.runner.rows import refusal
-from yade_scripts.runner.study import Screen, Study
+from yade_scripts.runner.study import Paced, Screen, Study
 from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
-POLL = 1.0  # s, for what runs elsewhere
-HEAR_SIGNALS = 0.1  # s, while runs are at work
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -107,36 +105,17 @@ def submit(study, options):
 
 
 def run(study, stop):
-    """Run all rows that are left, and wait for those that others run; returns also when stop.received."""
-    tried, screen = set(), Screen()
-    while not stop.received:
-        states = study.states()
-        waiting = [row for row, state in zip(study.rows, states) if state.kind == WAITING]
-        left = [row for row in waiting if row.name not in tried]
-        if left:
-            tried |= {row.name for row in left}
-            _run_batch(study, left, screen, stop)
-        elif any(state.kind == RUNNING for state in states):
-            _draw(study, screen)
-            time.sleep(POLL)
-        else:
-            break
+    """Run the study; returns also when stop.received."""
+    screen = Screen()
+    show = Paced(lambda: screen.draw(study.table(study.states_with_queue()[0], live=True)) if screen.shown else None)
+    with closing(study.running()) as working:
+        for _ in working:
+            if stop.received:
+                screen.close()
+                print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
+                break
+            show()
     screen.close()
-
-
-def _run_batch(study, left, screen, stop):
-    with Batch(study.folder, left, study.jobs) as batch:
-        while batch.running() and not stop.received:
-            _draw(study, screen)
-            batch.wait(HEAR_SIGNALS)
-        if stop.received:
-            screen.close()
-            print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
-            batch.stop()
-
-
-def _draw(study, screen):
-    screen.draw_if_due(lambda: study.table(study.states_with_queue()[0], live=True))
 
 
 def close(study, stop):

@@ -46,6 +46,9 @@ class StudyFolder:
                 "are; must be one at a time (--status shows how far it is)"
             ) from None
 
+    def unlock(self):
+        os.close(self.held)
+
 
 class Batch:
     """Rows at work, as many at once as `threads` allows, by workers in sessions of their own: Ctrl-C reaches this

@@ -11,10 +11,12 @@ from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, counts, duratio
 from analysis.runs.status import line as run_line
 from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
-from yade_scripts.runner.batch import LOGS, StudyFolder
+from yade_scripts.runner.batch import LOGS, Batch, StudyFolder
 
 LINES = 15  # of a live table
 EVERY, SHARE = 1.0, 0.05  # s between texts, and the share of the time that making them may take
+POLL = 1.0  # s, for what runs elsewhere
+HEAR_SIGNALS = 0.1  # s, while runs are at work
 
 
 class Study:
@@ -49,6 +51,26 @@ class Study:
         """Remove the logs of rows that failed in an earlier call and may be run again."""
         failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
         self.folder.remove_logs(failed)
+
+    def running(self):
+        """Run all rows that are left, and wait for those that others run; an iterator that goes on meanwhile. Closing
+        it stops the runs, each with a checkpoint."""
+        tried = set()
+        while True:
+            states = self.states()
+            waiting = [row for row, state in zip(self.rows, states) if state.kind == WAITING]
+            left = [row for row in waiting if row.name not in tried]
+            if left:
+                tried |= {row.name for row in left}
+                with Batch(self.folder, left, self.jobs) as batch:
+                    while batch.running():
+                        batch.wait(HEAR_SIGNALS)
+                        yield
+            elif any(state.kind == RUNNING for state in states):
+                time.sleep(POLL)
+                yield
+            else:
+                return
 
     def undecided(self, states):
         """'; 3 undecided (...)' of runs that have ended with their outcome open, and so with a checkpoint; or ''."""
@@ -122,20 +144,25 @@ class Study:
         return "\n".join([headline, *lines, *more])
 
 
+class Paced:
+    """A function that is called at most each second, and for at most SHARE of the time."""
+
+    def __init__(self, function):
+        self.function, self._next = function, 0.0
+
+    def __call__(self):
+        begun = time.monotonic()
+        if begun >= self._next:
+            self.function()
+            self._next = begun + max(EVERY, (time.monotonic() - begun) / SHARE)
+
+
 class Screen:
     """draw(text) replaces the text before on a terminal; elsewhere nothing is drawn."""
 
     def __init__(self, stream=sys.stderr):
         self.stream, self.shown = stream, stream.isatty()
         self._lines = 0
-        self._next = 0.0
-
-    def draw_if_due(self, text):
-        """draw(text()), unless that was done a moment ago."""
-        begun = time.monotonic()
-        if self.shown and begun >= self._next:
-            self.draw(text())
-            self._next = begun + max(EVERY, (time.monotonic() - begun) / SHARE)
 
     def draw(self, text):
         if self.shown:

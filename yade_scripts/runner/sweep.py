@@ -1,28 +1,22 @@
-"""Runs from Python: one call makes the rows of a sweep, has study.py run what is missing, and returns their table.
+"""Runs from Python: one call makes the rows of a sweep, runs what is missing, and returns their table.
 
 Needs yade on PATH, not to be called within YADE."""
 
 import hashlib
 import os
-import signal
-import subprocess
-import sys
-import tempfile
-import time
+from contextlib import closing
 from itertools import product
 
 from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
-from analysis.runs.status import duration_text
+from analysis.runs.status import DONE, duration_text
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.run.parameters import CORES
-from yade_scripts.runner.study import SHARE, Study
+from yade_scripts.runner.study import Paced, Study
 
-STUDY = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "study.py")
 OURS = ("out", "overwrite", "resume")  # parameters that a sweep sets
-POLL = 0.5  # s
 NAMED = 3  # failures that an exception names
 
 
@@ -74,7 +68,7 @@ def _sweep(kind, script, parameters, folder, jobs):
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(Study(file, jobs), file)
+    _run(Study(file, jobs))
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -113,33 +107,31 @@ def _text(name, value, column=None):
     return text
 
 
-def _run(study, file):
-    """Have study.py run a table, with a bar meanwhile; RunsFailed unless all its runs have ended."""
-    study.announce()
-    command = [sys.executable, STUDY, file, "-j", str(study.jobs)]
-    with tempfile.TemporaryFile("w+") as errors, bar(len(study.rows), "runs") as shown:
-        # In a session of its own, so that Ctrl-C reaches it once, and by us.
-        pipes = dict(stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors)
-        process = subprocess.Popen(command, start_new_session=True, **pipes)
-        try:
-            over = False
-            while not over:
-                begun = time.monotonic()
-                over = process.poll() is not None  # first, so that runs which have ended meanwhile are shown
-                states = study.states()
-                left = study.time_left(states)
-                text = "time left unknown" if left is None else f"{duration_text(left)} left"
-                shown.set_postfix_str(text, refresh=False)
-                shown.update(sum(state.progress for state in states) - shown.n)
-                time.sleep(0.0 if over else max(POLL, (time.monotonic() - begun) / SHARE))
-        except BaseException:
-            process.send_signal(signal.SIGINT)
-            process.wait()
-            raise
-        errors.seek(0)
-        lines = [line.removeprefix("study.py: ") for line in errors.read().splitlines()]
+def _run(study):
+    """Run a study, with a bar meanwhile; RunsFailed unless all its runs have ended."""
+    study.folder.lock()
+    try:
+        study.forget_failures()
+        study.announce()
+        with bar(len(study.rows), "runs") as shown, closing(study.running()) as working:
+            show = Paced(lambda: _show(study, shown))
+            for _ in working:
+                show()
+            states = _show(study, shown)
+    finally:
+        study.folder.unlock()
     if undecided := study.undecided(states):
         print(f"{len(study.rows)} runs{undecided}")
-    if process.returncode:
-        more = f", and {len(lines) - NAMED} more" if len(lines) > NAMED else ""
-        raise RunsFailed("; ".join(lines[:NAMED]) + more or f"{file}: study.py ended with {process.returncode}")
+    wrong = [f"{row.name}: {state.note}" for row, state in zip(study.rows, states) if state.kind != DONE]
+    if wrong:
+        more = f", and {len(wrong) - NAMED} more" if len(wrong) > NAMED else ""
+        raise RunsFailed("; ".join(wrong[:NAMED]) + more)
+
+
+def _show(study, shown):
+    """Have a bar show how far the runs are; their states."""
+    states = study.states()
+    left = study.time_left(states)
+    shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
+    shown.update(sum(state.progress for state in states) - shown.n)
+    return states
