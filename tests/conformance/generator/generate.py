@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Writes cases.json: every scene, and what it must give, by mpmath.
-
-/usr/bin/python3 tests/conformance/generator/generate.py [CASE ...]      of some cases: printed
-"""
+"""Writes cases.json, every scene and what it must give, by mpmath: /usr/bin/python3 generator/generate.py"""
 
 import json
 import re
-import sys
 from pathlib import Path
 
 import bond_cases as bond
@@ -27,15 +23,12 @@ CASES = [
 ]
 
 
-def cases(names=()):
-    """Those of these names, or all, as they stand in the file."""
-    return [made() for made in CASES if not names or made.__name__.replace("_", "-") in names]
+def suite():
+    """cases.json as a dictionary."""
+    return {**HEAD, "materials": MATERIALS, "cases": [made() for made in CASES]}
 
 
 if __name__ == "__main__":
-    if sys.argv[1:]:
-        print(json.dumps(cases(sys.argv[1:])))
-    else:
-        text = json.dumps({**HEAD, "materials": MATERIALS, "cases": cases()}, indent=1)
-        vectors_in_a_line = re.sub(r"\[\s+([-+\d.e,\s]+?)\s+\]", lambda m: "[" + " ".join(m[1].split()) + "]", text)
-        FILE.write_text(vectors_in_a_line + "\n")
+    text = json.dumps(suite(), indent=1)
+    vectors_in_a_line = re.sub(r"\[\s+([-+\d.e,\s]+?)\s+\]", lambda m: "[" + " ".join(m[1].split()) + "]", text)
+    FILE.write_text(vectors_in_a_line + "\n")
