@@ -114,10 +114,3 @@ def test_isotropy():
         longest.append(axis * np.random.default_rng(seed).choice([-1, 1]))
     p_values = [kstest(c, "uniform", args=(-1, 2)).pvalue for axes in (first, longest) for c in np.transpose(axes)]
     assert min(p_values) > 1e-3 / len(p_values)
-
-
-def test_contacts_at_the_start_beyond_those_that_rest():
-    """About 0.5 % more contacts than grains: nearer than 2 r, but not at rest."""
-    packing = packings.bpca(20000, RADIUS, OVERLAP, 2)
-    more = len(packings.contacts(packing)) - (packing.grains - 1)
-    assert 0.004 < more / packing.grains < 0.0065

@@ -42,17 +42,6 @@ def test_a_run_of_files_is_that_of_their_packings(files):
         assert float(file["characteristic_radius"]) == packings.characteristic_radius(packing)
 
 
-UNLIKE = dict(packing="bpca", grains=40, sizes="two", sizeRatio=3, sizeFraction=0.2)
-
-
-def test_grains_of_unlike_size_in_a_run_and_a_file(tmp_path):
-    """The filling is of their volume; a file says how unlike they are."""
-    found, _, _ = place(CollisionParameters.parse({**UNLIKE, "seed": 5}), OVERLAP)
-    assert found.filling == pytest.approx((32 + 8 * 27) / found.radius**3, rel=1e-12)
-    packings.save(tmp_path / "a.npz", make(CollisionParameters.parse(UNLIKE), OVERLAP, 0))
-    assert UNLIKE.items() <= packings.load(tmp_path / "a.npz").parameters.items()
-
-
 def write(path, position, radius, **parameters):
     np.savez(path, position=position, radius=radius, seed=1, parameters=json.dumps(parameters))
     return str(path)
@@ -102,13 +91,6 @@ def test_grains_of_another_material_are_refused(tmp_path, material, names, messa
     with refused(packings.PackingError, f"{path}: ", message):
         packing_from_file(path, RADIUS, OVERLAP, grains=ICE)
     assert packing_from_file(path, RADIUS, equilibrium_overlap(material), grains=material).grains == 2
-
-
-def test_a_planar_run_takes_planar_packings_only(tmp_path):
-    path = write(tmp_path / "a.npz", PAIR[:, [2, 1, 0]], np.array([RADIUS] * 2))
-    packing_from_file(path, RADIUS, OVERLAP, grains=ICE)  # whose material is not known
-    with pytest.raises(packings.PackingError, match="planar = 1"):
-        packing_from_file(path, RADIUS, OVERLAP, planar=True)
 
 
 def test_the_step_of_files_is_that_of_their_smallest_grain(tmp_path):

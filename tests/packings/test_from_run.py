@@ -138,10 +138,3 @@ def test_the_largest_piece_of_a_collision_is_at_rest_and_hardly_moved(tmp_path):
     back = packing_from_file(str(tmp_path / "a.npz"), R, PAIR.equilibrium_overlap, planar=True)
     assert np.allclose(back.position, one.position, atol=1e-12 * R)
     assert packings.load(tmp_path / "a.npz").parameters["packing"] == "collided"
-
-
-def test_pieces_of_other_runs_are_refused(tmp_path):
-    with pytest.raises(packings.PackingError, match="must be a run folder"):
-        largest_piece_of_run(tmp_path)
-    with pytest.raises(packings.PackingError, match="with sintered bonds"):
-        largest_piece_of_run(made_run(tmp_path / "bonded", bonded=True))

@@ -148,22 +148,15 @@ WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
 
 
 WRONG = [
-    ("", UM, "empty"),
-    ("x,y,z\n", UM, "0 rows of numbers"),
     ("x,y,z\n0,0,0\n", UM, "holds 1 grains"),
     *((LINE.replace("0.2", cell), UM, "position: must be ") for cell in ("nan", "1e300")),
-    (LINE.replace("0.2", "wide"), UM, "not a table of numbers"),
     ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y"),
     ("1 0 0 0 5\n2 0.2 0 0 5\n", UM, "names=-,x,y,z,-,radius"),
     (LINE + "0.2,0,0\n", UM, "grains 1 and 2 overlap by 1.99 radii"),
     (LINE, dict(UM, radius="0.09"), "in 2 pieces of 1, 1 grains"),
     (LINE, dict(unit="um"), "radius: not given"),
     (LINE, dict(radius="0.1"), "as with unit=cm or unit=mm or unit=um"),
-    (LINE, dict(UM, grainRadius="1e-7"), "grainRadius: follows from the file"),
-    (WITH_RADII.format("0.1"), UM, "has radii of its own"),
     (WITH_RADII.format("-1"), dict(unit="um"), "radius: must be > 0, found -1"),
-    ("2\nno grains\nC 0 0 0\n", UM, "1 rows of numbers; must be 2"),
-    (DUMP.format(n="all"), UM, "line 4: 'all' grains"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9"),
     ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
     ("# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY", UM, "no points in it that VTK can read"),
@@ -179,20 +172,6 @@ def test_what_is_wrong_gives_one_line(tmp_path, capfd, text, given, message):
     with refused((packings.PackingError, ParameterError), message):
         imported(str(path), given)
     assert capfd.readouterr() == ("", "")
-
-
-@pytest.mark.parametrize(
-    "arrays, message",
-    [
-        (dict(position=np.array([{}] * 2), radius=np.ones(2)), "Object arrays cannot be loaded"),
-        (dict(position=np.ones((2, 2)), radius=np.ones(2)), "position: must have the shape (any, 3)"),
-        (dict(position=np.ones((2, 3)), radius=np.ones(3)), "radius: must have the shape (2)"),
-    ],
-)
-def test_what_is_wrong_with_arrays(tmp_path, arrays, message):
-    np.savez(tmp_path / "a.npz", **arrays)
-    with refused(packings.PackingError, message):
-        imported(str(tmp_path / "a.npz"), {})
 
 
 YAML = "# ----\naggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0, 0]]\n  radii: [0.1, 0.1]\n"

@@ -8,8 +8,7 @@ from scipy.stats import kstest
 
 from analysis.measures.fragments import fragment_labels
 from yade_scripts import packings
-from yade_scripts.experiments.collision import CollisionParameters, place
-from yade_scripts.packings import bcca, extent
+from yade_scripts.packings import bcca
 
 
 @pytest.mark.parametrize("filling, relative_radius, grains", [(0.6, 20, 240), (0.9, 25, 562), (0.3, 10, 30)])
@@ -73,14 +72,3 @@ def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, di
     slope = (np.mean(large) - np.mean(small)) / np.log(16)
     error = np.hypot(np.std(small), np.std(large)) / np.sqrt(12) / np.log(16)
     assert abs(slope - 1 / dimension) < 4 * error + 0.15 / dimension**2, (1 / slope, error)
-
-
-@pytest.mark.parametrize("planar", [0, 1])
-def test_radius_of_a_bcca_run_holds_both_aggregates(planar):
-    given = CollisionParameters.parse(dict(packing="bcca", grains=100, seed=4, planar=planar))
-    assert given.radius is None and given.filling is None
-    placed, pair, _ = place(given, OVERLAP)
-    reach = [np.linalg.norm(p.position - p.position.mean(axis=0), axis=1).max() / RADIUS for p in pair]
-    assert max(reach) == pytest.approx(placed.radius, rel=1e-9) and min(reach) < 0.999 * placed.radius
-    assert placed.filling == pytest.approx(100 / placed.radius ** (2 if planar else 3), rel=1e-12)
-    assert extent(bcca(100, RADIUS, OVERLAP, 4, planar=bool(planar))) <= placed.radius * RADIUS * (1 + 1e-12)

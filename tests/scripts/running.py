@@ -111,11 +111,6 @@ def process_writing(folder):
         return next((int(lock[4]) for lock in held if lock[5].endswith(":" + inode)), None)
 
 
-def waits_for_a_lock(pid):
-    with open("/proc/locks") as locks:
-        return any("->" in lock and f" {pid} " in lock for lock in locks)
-
-
 def stop_midway(folder, arguments, number=signal.SIGKILL, script=COLLIDE, after=0.0):
     """The process of a run, in the folder run, that was sent a signal `after` seconds after its first checkpoint,
     before its end."""

@@ -156,11 +156,8 @@ def test_functors_give_the_same_pressure(tmp_path):
         ("finalFilling=1e-5", "finalFilling = 1e-05: must be above the 0.008166 of the start"),
         ("initialFilling=0.2", "initialFilling = 0.2: "),  # the cluster would touch its images
         ("grains=20", "grains = 20: the cell would be too small at a filling of 0.5"),
-        ("stretchFilling=0.1", "stretchFilling = 0.1: given with stretch = no"),
         ("stepFraction=0.4", "stepFraction = 0.4: unstable at this final filling and damping"),
-        ("packing=rbd", "packing = rbd: given with boundary = periodic"),
         ("boundary=walls stretch=x", "stretch = x: given with boundary = walls"),
-        ("velocity=3", "velocity: unknown parameter"),
     ],
 )
 def test_wrong_parameters_give_one_line(tmp_path, arguments, message):

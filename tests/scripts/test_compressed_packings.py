@@ -8,7 +8,6 @@ import pytest
 from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.from_run import PeriodicState
-from yade_scripts.packings.packing import PackingError
 from yade_scripts.studies import compressed
 
 R = MATERIALS["ice"].grainRadius
@@ -50,12 +49,3 @@ def test_both_spheres_have_the_filling_of_the_table(made_cell):
     before = os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns
     compressed.cut_pair(0.4, 3)
     assert os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns == before
-
-
-def test_what_cannot_be_cut_is_refused(made_cell, monkeypatch):
-    with pytest.raises(PackingError, match="f0.3-s9/states: no states; must be those of a cell"):
-        compressed.cut_pair(0.3, 9)
-    monkeypatch.setattr(compressed, "PLACES", 3)
-    monkeypatch.setattr(compressed, "TOLERANCE", 1e-9)
-    with pytest.raises(PackingError, match="no sphere of that filling in 3 places; must be another cell"):
-        compressed.cut_pair(0.4, 3)

@@ -7,15 +7,11 @@ from dataclasses import asdict, replace
 
 import pytest
 
-from analysis.__main__ import main
 from analysis.runs import lock
 from analysis.runs.format import LOCK_FILE
 from analysis.runs.lock import Lock, read_lock, under_way
-from analysis.runs.status import FAILED
-from yade_scripts.experiments.collision import KIND
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.folder import RunFolder
-from yade_scripts.runner import rows
 
 ELSEWHERE = Lock("node7", "another boot", 99)
 
@@ -136,14 +132,3 @@ def _start(path):
         os._exit(1)
     finally:
         os._exit(2)
-
-
-def test_both_commands_show_where_a_run_is(tmp_path, capsys):
-    """A row of another machine without Slurm is one that failed: nothing here can tell when it ends."""
-    folder = left_by(tmp_path / "run", ELSEWHERE)
-    (tmp_path / "run" / "run.json").write_text('{"outcome": "running"}')
-    row = rows.StudyRow("row", {}, "collide.py", KIND, KIND.parse({"out": folder}))
-    found = rows.state(row, str(tmp_path / "log"))
-    assert found.kind == FAILED and "is run on node7" in found.note
-    assert main(["status", folder, "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)[0]["host"] == "node7"

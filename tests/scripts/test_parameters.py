@@ -7,7 +7,6 @@ import time
 import pytest
 from refused import refused
 
-from analysis import theory
 from yade_scripts import stability
 from yade_scripts.experiments import collision, collision_step
 from yade_scripts.experiments.collision import CollisionParameters
@@ -114,40 +113,22 @@ def test_properties_of_a_material_are_columns_of_their_own():
 WRONG = {
     "velocty=3": "velocty: unknown parameter (did you mean velocity?)",
     "velocity=fast": "velocity = fast: not a finite number; must be > 0 [m/s]",
-    "velocity=9**9**9**9": "velocity = 9**9**9**9: not a finite number",
     "velocity=-1": "velocity = -1: must be > 0 [m/s]",
     "velocity=3000": "velocity = 3000 m/s: must be 1e-06 to 1000 m/s",
     "radius=1": "radius = 1: too small or large at filling 0.4; must be about 1.71",
-    "radius=1e200": "radius = 1e+200: too small or large",
     "grains=10.5": "grains = 10.5: not a whole number",
     "grains=100 radius=20": "radius and grains: both given",
-    "impact=1.1": "impact = 1.1: must be 0 to 1",
     "poisson=0 viscoelasticTime=1e-12": "poisson = 0: with viscous drag must be > 0",
-    "neck=0.8": "neck = 0.8: must be 0, or above that of a contact",
-    "neck=0.5 initialOverlap=0.5": "initialOverlap = 0.5: given with neck = 0.5",
     "material=iron": "material = iron: must be ice or silicate",
     "stepFraction=0.5": "stepFraction = 0.5: must be > 0 and <= 0.4",
-    "stepFraction=auto tolerance=0.1": "tolerance = 0.1: must be 1e-07 to 0.01",
     "tolerance=1e-5": "tolerance = 1e-05: given with stepFraction = 0.1",
-    "impactStepFraction=0.1": "impactStepFraction = 0.1: given with stepFraction = 0.1",
     "impactStepFraction=0.1 stepFraction=auto": "impactStepFraction = 0.1: given with stepFraction = auto",
-    "impactStepFraction=0.01 engine=functors": "impactStepFraction = 0.01: given with engine = functors",
     "out=": "out = : must be a folder",
-    "packing=bcca radius=10": "radius = 10: given with packing = bcca",
     "packing=bcca grains=1e6": "grains = 1000000: too many for packing = bcca",
-    "packing=bcca projectileGrains=200_000": "projectileGrains = 200000: too many for packing = bcca",
-    "packing=bpca removeLooseGrains=1": "removeLooseGrains = 1: given with packing = bpca",
-    "packing=bpca planar=1": "planar = 1: given with packing = bpca",
     "target=wall neck=0.5": "neck = 0.5: given with target = wall",
-    "projectileGrains=9": "projectileGrains = 9: given with packing = cpe",
-    "file=a": "file = a: given with packing = cpe",
     "packing=file": "file: not given with packing = file",
-    "packing=file file=a seed=2": "seed = 2: given with packing = file",
-    "sizes=two sizeRatio=2": "sizes = two: given with packing = cpe",
     "packing=bpca sizes=two": "sizeRatio: not given with sizes = two",
-    "packing=bpca sizeSpread=0.1": "sizeSpread = 0.1: given with sizes = equal",
     "packing=bcca sizes=two sizeRatio=2 neck=0.5": "sizes = two: given with neck = 0.5",
-    "velocity": "argument 'velocity': not understood",
     "velocity=3 velocity=4": "velocity: given twice",
 }
 
@@ -206,15 +187,3 @@ def test_help_names_every_parameter_once_with_its_unit(parameters):
     text = parameters.help_text()
     assert sorted(re.findall(r"^  (\w+)", text, re.M)) == sorted(parameters.columns())
     assert parameters is not CollisionParameters or "\n  velocity = 3.16228 [m/s]\n" in text
-
-
-@pytest.mark.parametrize("name", MATERIALS)
-def test_materials_are_in_si(name):
-    """The time unit of K13 eq 2 with E* is the 1.93e-10 s (ice) and 1.71e-9 s (silicate) that K13 states."""
-    m = MATERIALS[name]
-    reduced_young = m.young / (2 * (1 - m.poisson**2))
-    unit = 0.95 * (m.density**0.5 * m.grainRadius ** (7 / 6) / (reduced_young ** (1 / 3) * m.surfaceEnergy ** (1 / 6)))
-    assert unit == pytest.approx({"ice": 1.93e-10, "silicate": 1.71e-9}[name], rel=0.005)
-    rolling = 6 * math.pi**2 * m.surfaceEnergy * m.grainRadius * m.criticalRolling
-    assert rolling == pytest.approx({"ice": 4.74e-16, "silicate": 1.42e-15}[name], rel=0.005)
-    assert theory.GRAIN_RADIUS[name] == m.grainRadius

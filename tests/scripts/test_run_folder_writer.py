@@ -69,13 +69,6 @@ def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monk
     assert sorted(os.listdir(other.path)) == ["ended", "run.json"]
 
 
-def test_a_folder_that_a_killed_run_began_is_used(tmp_path):
-    for name in ("lock", ".run.json.0123abcd.unfinished"):
-        (tmp_path / name).write_text(json.dumps({"host": lock.this_machine()[0]}))
-    RunFolder(str(tmp_path))
-    assert os.listdir(tmp_path) == ["lock"]
-
-
 def contents(folder):
     """{name: text, or where a link leads} of everything in a folder."""
     return {
@@ -87,9 +80,7 @@ def contents(folder):
 
 OTHERS = {
     "no run": {"thesis.tex": "x"},
-    "states that someone put aside": {"states/000000.npz": "x"},
     "no JSON": {"run.json": "no json", "history.npz": "mine"},
-    "a list": {"run.json": "[]", "history.npz": "mine"},
     "another program's": {"run.json": '{"format": 3, "outcome": "fine"}', "history.npz": "mine"},
 }
 

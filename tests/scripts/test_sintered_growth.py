@@ -23,15 +23,6 @@ def small_growth(tmp_path, monkeypatch):
     os.makedirs(sintered.GROWN)
 
 
-def test_a_growth_that_does_not_stick_says_so(tmp_path, monkeypatch):
-    """Collisions that leave the halves apart, without running any."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sintered, "_collide", lambda *arguments: None)
-    monkeypatch.setattr(sintered, "largest_piece_of_run", lambda run: load(run + "-0.npz"))
-    with pytest.raises(sintered.PackingError, match="512 grains did not stick at 50 m/s in 5 orientations"):
-        sintered.grow(Grown(50.0, 1))
-
-
 def test_a_small_table_from_growth_to_report(small_growth, tmp_path):
     """Aggregates of 32 grains grown at 3 m/s, sintered, collided, and reported with the V_g that they grew at."""
     grown = Grown(3.0, 7)

@@ -98,20 +98,6 @@ def test_arrays_are_no_larger_than_slurm_takes_them_and_short_rows_share_tasks()
 
 
 ONE = HEADER + "a 5 10 1 a\n"
-NOT_SUBMITTED = {
-    "a.table --dry-run": "--dry-run: must be given with --slurm",
-    "a.table -- --time=5": "--time=5: must be given with --slurm",
-    "a.table --slurm": "sbatch: Batch job submission failed: no such partition",
-    "a+(b).table --slurm": "a+(b): a table's name must be of letters, digits and -_.,=+",
-}
-
-
-@pytest.mark.parametrize("arguments", NOT_SUBMITTED)
-def test_what_cannot_be_submitted_is_one_line(tmp_path, program, arguments):
-    program("sbatch", "echo Batch job submission failed: no such partition >&2; exit 1")
-    write_table(tmp_path, ONE, arguments.split()[0])
-    done = study(tmp_path, *arguments.split())
-    assert done.returncode == 2 and NOT_SUBMITTED[arguments] in done.stderr.splitlines()[-1]
 
 
 @pytest.fixture

@@ -14,7 +14,6 @@ from yade_scripts.materials import MATERIALS, equilibrium_overlap, pair_constant
 from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import checkpoint, table
-from yade_scripts.run.parameters import gather
 from yade_scripts.runner import rows
 from yade_scripts.runner.study import Screen, Study
 
@@ -63,14 +62,6 @@ def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
             (tmp_path / "run" / "run.json").write_text(text)
         found = rows.state(given, str(tmp_path / "log"))
         assert found.kind == FAILED and "run.json" in found.note
-
-
-def test_contact_updates_are_those_of_a_packing():
-    """Contacts counted in a packing of A24's at R = 30, whose surface has fewer."""
-    overlap = equilibrium_overlap(MATERIALS["ice"])
-    counted = len(packings.contacts(packings.cpe(0.4, 30e-7, 1e-7, overlap, seed=1)))
-    estimate = KIND.estimate(parse({"radius": 30, "filling": 0.4, "duration": 64.6 * 30 * TIME_UNIT}))
-    assert 0.9 < 2 * counted * 64.6 * 30 / 0.1 / (estimate.contacts * estimate.steps) < 1
 
 
 @pytest.mark.parametrize("cells", [{"radius": 25, "impact": 0.5}, {"packing": "bcca", "grains": 300}], ids=str)
@@ -147,17 +138,6 @@ def test_a_packing_file_that_has_changed_since_makes_another_run(tmp_path):
         assert difference == (None if seed == 1 else f"file = {file}, not {file} as it is now")
     os.remove(file)
     assert differences(wanted, {"format": 3, "parameters": wanted.as_dict(), "derived": derived})() is None
-
-
-def test_arguments_without_consequence_leave_a_row_its_folder(tmp_path, monkeypatch):
-    monkeypatch.delenv("YADE_BATCH", raising=False)
-    (tmp_path / "rows.table").write_text("description velocity\nfast 10\n")
-    for more, out in {
-        "resume=1": "runs/fast",
-        "threads=1": "runs/fast",
-        "seed=3": "runs/collide-ice-f0.4-R20-v10-s3",
-    }.items():
-        assert parse(*gather([f"table={tmp_path}/rows.table:2", more], KIND)).out == out
 
 
 def test_runs_of_format_1_agree_with_rows_that_give_no_duration():

@@ -48,23 +48,6 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"out": "x"},
-        {"file": "a b.npz", "packing": "file"},
-        {"velocity": True},
-        {"seed": []},
-        {"seed": [1, 2, 1]},
-        {"jobs": 0},
-    ],
-)
-def test_what_a_sweep_has_no_place_for_is_refused(tmp_path, given):
-    with pytest.raises(ParameterError, match="must be"):
-        from_python(**{"folder": tmp_path / "runs", **given})
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
