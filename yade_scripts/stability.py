@@ -67,16 +67,15 @@ def equivalent_filling(packing, filling, planar, constants):
     return filling
 
 
-def limit_of_unlike(grains, constants, radius_range, packing="bpca"):
-    """Largest stable stepFraction [t0 of constants] of aggregates of grains of unlike size.
+def limit_of_unlike(parameters, radius_range):
+    """Largest stable stepFraction [t0 of two grains of grainRadius] of aggregates of grains of unlike size.
 
-    grains: as for materials.pair_constants; radius_range: (smallest, largest) [m]; packing: "bcca", "bpca" or "file".
-    The fastest vibration is that of the smallest grain among the largest ones: its contacts are stiffer than among its
-    own kind."""
-    stiffest = pair_constants(grains, radius_range)
-    smallest = pair_constants(grains, (radius_range[0], radius_range[0]))
-    stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=constants["timeUnit"])
-    return step_limit(stiffest, equivalent_filling(packing, None, False, stiffest))
+    parameters: of a collision; radius_range: (smallest, largest) [m]. The fastest vibration is that of the smallest
+    grain among the largest ones: its contacts are stiffer than among its own kind."""
+    stiffest = pair_constants(parameters, radius_range)
+    smallest = pair_constants(parameters, (radius_range[0], radius_range[0]))
+    stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=pair_constants(parameters)["timeUnit"])
+    return step_limit(stiffest, equivalent_filling(parameters.packing, None, False, stiffest))
 
 
 def require_stable(step, limit, depends_on):

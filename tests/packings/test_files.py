@@ -11,11 +11,12 @@ from running import make_packing
 
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND, CollisionParameters, place
-from yade_scripts.experiments.collision_step import require_step_of_files, step_limit
-from yade_scripts.materials import equilibrium_overlap, pair_constants
+from yade_scripts.experiments.collision_step import require_stable_with
+from yade_scripts.materials import equilibrium_overlap
 from yade_scripts.packings.aggregate import make
 from yade_scripts.packings.files import OF_CONTACTS, packing_from_file
 from yade_scripts.parameters import ParameterError
+from yade_scripts.stability import limit_of_unlike
 
 
 @pytest.fixture
@@ -93,25 +94,25 @@ def test_grains_of_another_material_are_refused(tmp_path, material, names, messa
     assert packing_from_file(path, RADIUS, equilibrium_overlap(material), grains=material).grains == 2
 
 
-def test_the_step_of_files_is_that_of_their_smallest_grain(tmp_path):
-    """Read from a file, grains of unlike size allow no longer step than where they are made in the run."""
+def test_the_step_is_stable_for_the_smallest_grain(tmp_path):
+    """Whether grains of unlike size are made in the run or read from a file, which may be denser than what grows."""
     path = str(tmp_path / "a.npz")
     sizes = dict(packing="bpca", grains=40, sizes="two", sizeRatio=0.5)
     packings.save(path, make(CollisionParameters.parse(sizes), OVERLAP, 0))
-    constants = pair_constants(ICE)
-    made = step_limit(CollisionParameters.parse(sizes), constants)
 
-    def require(step, **others):
-        parameters = CollisionParameters.parse(dict(packing="file", file=path, stepFraction=step, **others))
-        _, pair, _ = place(parameters, OVERLAP)
-        require_step_of_files(parameters, constants, pair)
+    def require(step, **given):
+        parameters = CollisionParameters.parse(dict(stepFraction=step, **given))
+        require_stable_with(parameters, place(parameters, OVERLAP)[1])
 
-    assert made < 0.2
-    require(0.7 * made)  # files may be denser than what grows
-    with pytest.raises(ParameterError, match="stepFraction = .*: unstable at .* drag, with the radii of the files"):
-        require(1.01 * made)
+    limit = limit_of_unlike(CollisionParameters.parse(sizes), (RADIUS / 2, RADIUS))
+    assert limit < 0.2
+    require(0.99 * limit, **sizes)
+    require(0.7 * limit, packing="file", file=path)
+    for given in (sizes, dict(packing="file", file=path)):
+        with pytest.raises(ParameterError, match="stepFraction = .*: unstable at .* with grains of these sizes"):
+            require(1.01 * limit, **given)
     packings.save(path, packings.bpca(40, RADIUS, OVERLAP, 1))
-    require(0.3)
+    require(0.3, packing="file", file=path)
 
 
 def test_the_command_makes_packings_and_says_of_what(tmp_path):

@@ -139,7 +139,7 @@ def prepare(parameters, threads):
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
     for packing in pair:
         packings.require_connected(packing)
-    collision_step.require_step_of_files(parameters, constants, pair)
+    collision_step.require_stable_with(parameters, pair)
     touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
     if parameters.duration is None:
         duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)

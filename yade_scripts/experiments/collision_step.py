@@ -10,7 +10,6 @@ import numpy as np
 
 from yade_scripts import stability, step_choice
 from yade_scripts.materials import pair_constants, require_small_contacts
-from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.parameters import ParameterError
 
 LARGEST_NECK = 0.7  # the largest of S17
@@ -24,9 +23,6 @@ def complete(parameters, constants, threads):
     constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
     """
     require_small_contacts(constants)
-    if parameters.sizes != EQUAL:
-        smallest = parameters.radius_range()[0]
-        require_small_contacts(pair_constants(parameters, (smallest, smallest)))
     require_sintered(parameters.neck, constants)
     limit = step_limit(parameters, constants)
     parameters = parameters.changed(stepFraction=step(parameters, constants))
@@ -47,28 +43,20 @@ def step(parameters, constants):
 
 
 def step_limit(parameters, constants):
-    """Largest stable stepFraction [t0] of a collision."""
+    """Largest stable stepFraction [t0] of a collision of grains of one size."""
     filling = stability.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
-    limit = stability.step_limit(constants, filling)
-    if parameters.sizes == EQUAL:
-        return limit
-    return min(limit, stability.limit_of_unlike(parameters, constants, parameters.radius_range()))
+    return stability.step_limit(constants, filling)
 
 
-def require_step_of_files(parameters, constants, pair):
-    """Raise ParameterError when the step is unstable for the smallest grain of packings from files, whose radii are
-    known only when they are read, or contacts of such grains are too large.
-
-    parameters: complete; constants: as for complete(); pair: list of Packing.
-    """
+def require_stable_with(parameters, pair):
+    """Raise ParameterError when the step is unstable, or contacts too large, for the smallest grain of a pair of
+    packings; parameters: complete; pair: list of Packing."""
     radii = np.concatenate([packing.radius for packing in pair])
     smallest, largest = float(radii.min()), float(radii.max())
-    if parameters.packing != "file" or smallest == largest:
-        return
-    require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-    unlike = stability.limit_of_unlike(parameters, constants, (smallest, largest), parameters.packing)
-    limit = min(step_limit(parameters, constants), unlike)
-    stability.require_stable(parameters.stepFraction, limit, "filling and drag, with the radii of the files")
+    if smallest != largest:
+        require_small_contacts(pair_constants(parameters, (smallest, smallest)))
+        limit = stability.limit_of_unlike(parameters, (smallest, largest))
+        stability.require_stable(parameters.stepFraction, limit, "filling and drag, with grains of these sizes")
 
 
 def require_sintered(neck, constants):

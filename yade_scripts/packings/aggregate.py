@@ -1,7 +1,6 @@
 """The aggregate that a run's parameters describe."""
 
 from dataclasses import dataclass, replace
-from math import exp
 
 import numpy as np
 
@@ -102,13 +101,6 @@ class AggregateParameters(GrainParameters):
     def is_grown(self):
         """Whether grains come together one by one, so that they may be of unlike size."""
         return self.packing in MOST_GROWN
-
-    def radius_range(self):
-        """(smallest, largest) radius [m] that a grain of these sizes may have."""
-        if self.sizes == TWO:
-            return self.grainRadius * min(1.0, self.sizeRatio), self.grainRadius * max(1.0, self.sizeRatio)
-        width = exp(WIDEST * self.sizeSpread) if self.sizes == LOGNORMAL else 1.0
-        return self.grainRadius / width, self.grainRadius * width
 
     def _of_cpe(self):
         dimensions = 2 if self.planar else 3
