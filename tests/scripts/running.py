@@ -1,6 +1,5 @@
 """Runs the scripts as a user does."""
 
-import io
 import json
 import os
 import signal
@@ -74,11 +73,6 @@ def refusal(process):
     lines = messages(process)
     assert process.returncode == 2 and len(lines) == 1, (process.returncode, lines)
     return lines[0]
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
 
 
 def wait_for(condition, seconds=60):

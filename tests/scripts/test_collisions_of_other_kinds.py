@@ -8,7 +8,6 @@ from running import completed, read_arrays, read_json
 from analysis.runs.folder import open_run
 from analysis.runs.ledger import closure_history
 from analysis.runs.measured import outcome_of_run
-from yade_scripts.experiments.collision import KIND
 
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")
 
@@ -69,33 +68,3 @@ def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
     assert 0.2 < np.mean(passed) < 0.8
     errors = [np.abs(closure_history(history)[passed]).max() for history in (one, other)]
     assert 0 < errors[0] < 0.3 * errors[1]
-
-
-@pytest.mark.parametrize("times", [0.2, 1])
-@pytest.mark.parametrize("packing", [{"radius": "20"}, {"packing": "bpca", "grains": "5000"}])
-def test_estimates_count_the_shorter_steps(packing, times):
-    """In a run of no more than the time until the touch and four radii, as many as the ratio of the steps."""
-    usual = {**packing, "velocity": "30", "stepFraction": "0.2"}
-    radius = KIND.parse(usual).radius or 2.6 * 5000 ** (1 / 2.97)
-    usual["duration"] = f"{times * 4 * radius * 1e-7 / 30}"
-    longer, shorter = (KIND.estimate(KIND.parse({**usual, **more})) for more in ({}, {"impactStepFraction": "0.05"}))
-    assert shorter.steps == pytest.approx(4 * longer.steps, rel=1e-6) and shorter.contacts == longer.contacts
-
-
-SHORT = ("radius=3", "velocity=30", "duration=12e-9", "threads=1", "seed=2", "stepFraction=0.05")
-
-
-@pytest.mark.parametrize("name, given, default", [("limit", "cut", "held"), ("slidingStiffnessFactor", 2, 1)])
-def test_engine_and_functors_obey_it(tmp_path, name, given, default):
-    runs = {}
-    for how in ("fused", "functors", "usual"):
-        law = [] if how == "usual" else [f"{name}={given}", f"engine={how}"]
-        about, runs[how] = completed(tmp_path / how, *SHORT, *law)
-        assert about["parameters"][name] == (default if how == "usual" else given)
-    fused, functors, usual = runs.values()
-    for channel in ("kinetic", "slidingDissipation", "rollingDissipation"):
-        assert fused[channel] == pytest.approx(functors[channel], abs=1e-6 * fused["kinetic"][0]), channel
-    if name == "limit":
-        assert fused["rollingDissipation"][-1] < 0.8 * usual["rollingDissipation"][-1]
-    else:
-        assert np.abs(fused["sliding"] - usual["sliding"]).max() > 1e-3 * fused["kinetic"][0]

@@ -1,11 +1,9 @@
 """Tables, estimates and texts of a study, without running one."""
 
 import os
-from io import StringIO
 
 import numpy as np
 import pytest
-from running import Terminal
 
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, State
 from yade_scripts import packings
@@ -15,7 +13,7 @@ from yade_scripts.packings.files import sum_of_file
 from yade_scripts.packings.placing import first_touch
 from yade_scripts.run import checkpoint, table
 from yade_scripts.runner import rows
-from yade_scripts.runner.study import Screen, Study
+from yade_scripts.runner.study import Study
 
 TIME_UNIT = pair_constants(MATERIALS["ice"])["timeUnit"]
 parse = KIND.parse
@@ -37,20 +35,6 @@ def test_a_table_that_was_written_is_read_back(tmp_path):
         back = table.read(path)
         assert [row.description for row in back] == ["a", "b"]
         assert [row.cells for row in back] == [{"radius": "4", "!THREADS": "1"}, {"velocity": "10**0.5"}]
-
-
-def test_names_of_any_length_are_names_of_files(tmp_path):
-    """Two descriptions of 400 characters that differ in the last one."""
-    for letter in ("x", "\u00e9"):
-        lines = "".join(f"{letter * 400}{end} 4 10\n" for end in "ab")
-        (tmp_path / "rows.table").write_text("description radius velocity\n" + lines)
-        found = rows.read(tmp_path / "rows.table")
-        assert len({row.name for row in found}) == len({row.out for row in found}) == 2
-        for one in found:
-            assert not one.error
-            (tmp_path / f"{one.name}.log").write_text("")
-            os.makedirs(tmp_path / one.out)
-    assert rows.file_name("f0.4-R40,i=5 s1") == "f0.4-R40,i=5_s1"
 
 
 def test_an_ended_run_without_a_readable_record_is_not_done(tmp_path):
@@ -153,19 +137,3 @@ def test_runs_of_format_1_agree_with_rows_that_give_no_duration():
     assert difference(poisson=0.3) == "poisson = 0.25, not 0.3"
     given["duration"] *= 0.9
     assert difference() == "duration = 4.6512e-07, not 5.168e-07"
-
-
-def test_a_live_table_is_drawn_over_itself_and_only_on_a_terminal():
-    three = [rows.StudyRow(name, {}, "collide.py", KIND, parse({"radius": 40})) for name in "abc"]
-    states = [State(RUNNING, 0.43, 60, 25.0), State(DONE, 1.0, 44.0)]
-    text = study_of(*three).table([*states, State(FAILED, note="it broke")], live=True)
-    assert text.splitlines()[0] == "tiny: 1 done, 1 running, 0 waiting, 1 failed; 00:25 left"
-    assert "[########............]  43.0 %    00:25 left" in text and "it broke" in text
-    terminal, file = Terminal(), StringIO()
-    for stream in (terminal, file):
-        screen = Screen(stream)
-        screen.draw(text)
-        screen.draw(text)
-        screen.close()
-    assert terminal.getvalue().count("\033[3A\033[J") == 2 and terminal.getvalue().endswith("\033[J")
-    assert file.getvalue() == ""

@@ -207,7 +207,6 @@ def place(parameters, overlap):
     else:
         parameters = _with_size(parameters, pair)
         pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
-    packings.require_apart(*pair)
     return parameters, pair, velocities
 
 

@@ -14,6 +14,5 @@ from yade_scripts.packings.packing import (  # noqa: F401
     largest_piece,
     moved,
     random_stream,
-    require_apart,
     require_connected,
 )

@@ -16,9 +16,10 @@ from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
 from yade_scripts.packings.files import OF_CONTACTS
 from yade_scripts.packings.packing import Packing, PackingError, centred, largest_cluster, random_stream
-from yade_scripts.packings.rest import unpressed
+from yade_scripts.packings.rest import at_rest
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
 
+DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
 NO_RUN = (OSError, ValueError, KeyError, TypeError, RunFolderError)  # what reading one may raise
 
 
@@ -117,8 +118,15 @@ def cut(state, parameters, index=0):
 
 
 def _at_rest(packing, pairs, grain_radius, overlap):
-    """The packing with its contacts at rest, and among its parameters what that took."""
-    position = unpressed(packing.position, packing.radius, pairs, grain_radius, overlap)
+    """The packing with its contacts at rest, and among its parameters what that took. Raises PackingError where one
+    stays deeper than DEEPEST or comes apart."""
+    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap)
+    if deviation.min() <= -1.0 or deviation.max() >= DEEPEST - 1:
+        worst = deviation[np.abs(deviation).argmax()]
+        raise PackingError(
+            f"the contacts cannot be brought to rest together: one overlaps by {1 + worst:.3g} of the equilibrium; "
+            f"must be at most {DEEPEST:g}: a looser state"
+        )
     motion = float(np.linalg.norm(position - packing.position, axis=1).max())
     about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
     return replace(packing, position=position, parameters=about)

@@ -79,25 +79,26 @@ def imported(path, texts):
     materials.require_small_contacts(constants)
     overlap = constants["equilibriumOverlap"]
     pairs = _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap)
-    rest = at_rest(position, radius, pairs, grain_radius, overlap)
-    if len(rest.pairs) and abs(rest.deviation[rest.worst]) > DEEPEST - 1:
-        first, second = rest.pairs[rest.worst]
+    rested, at_end, deviation = at_rest(position, radius, pairs, grain_radius, overlap)
+    if np.abs(deviation).max(initial=0.0) > DEEPEST - 1:
+        worst = np.abs(deviation).argmax()
+        first, second = at_end[worst]
         raise PackingError(
             f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
-            f"{1 + rest.deviation[rest.worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
+            f"{1 + deviation[worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
         )
-    moved = float(np.linalg.norm(rest.position - position, axis=1).max())
+    moved = float(np.linalg.norm(rested - position, axis=1).max())
     about = dict(
         packing="imported", grainRadius=grain_radius, overlap=overlap, tolerance=tolerance, largestMotion=moved
     )
     about |= {name: getattr(parameters, name) for name in OF_CONTACTS}
-    packing = Packing(centred(rest.position, radius), radius, 0, about)
+    packing = Packing(centred(rested, radius), radius, 0, about)
     lines = [
         f"{path}: {spheres.about}, {len(radius)} grains; those touch that are at most "
         f"{tolerance / radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
         f"brought to rest: grains moved by up to {moved / grain_radius:.2g} grain radii, contacts are within "
-        f"{np.abs(rest.deviation).max(initial=0.0):.1g} of their overlap at rest, "
-        f"{len(rest.pairs) - len(pairs)} more came about",
+        f"{np.abs(deviation).max(initial=0.0):.1g} of their overlap at rest, "
+        f"{len(at_end) - len(pairs)} more came about",
     ]
     return _in_pieces(path, packing, parameters.pieces), lines
 

@@ -114,18 +114,6 @@ def largest_piece(packing):
     return Packing(packing.position[kept], packing.radius[kept], packing.seed, about)
 
 
-def require_apart(first, second):
-    """Raise PackingError when a grain of one packing touches one of the other."""
-    reach = first.radius.max() + second.radius.max()
-    near = cKDTree(first.position).sparse_distance_matrix(cKDTree(second.position), reach, output_type="coo_matrix")
-    overlap = first.radius[near.row] + second.radius[near.col] - near.data
-    if np.any(overlap > 0):
-        raise PackingError(
-            f"the packings overlap: {np.count_nonzero(overlap > 0)} pairs of grains, by up to "
-            f"{overlap.max():.3g} m; must be none, so put their centres further apart"
-        )
-
-
 def require_connected(packing):
     """Raise PackingError when a packing is in crumbs, so that a collision of it has no outcome."""
     try:

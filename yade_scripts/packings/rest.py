@@ -5,66 +5,37 @@ that solves the linearised equations. Contacts without loops, and loops that onc
 where there are more contacts than the grains can obey at once, the steps lead to the least sum of k_ij (d_ij - ...)^2,
 with k_ij the stiffness of the contact at rest: the minimum of the elastic energy, where forces balance."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import lsqr
 
 from analysis.progress import progress
-from yade_scripts.packings.packing import AT_REST, PackingError, equilibrium_overlaps, surface_gaps, touching
+from yade_scripts.packings.packing import AT_REST, equilibrium_overlaps, surface_gaps, touching
 
 MOST_MOVES = 20
 # Of LSQR a step: more of them follow soft modes of dense packings, which are of no use before distances are nearly
 # right (10,800 close-packed grains: 1 % left after 6 steps of 300, 4 % after 6 of 2000).
 ITERATIONS = 300
-DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
-
-
-@dataclass(frozen=True)
-class Rest:
-    """Positions (N, 3) [m], pairs (M, 2) of contacts, how much deeper each (M,) is than at rest, in equilibrium
-    overlaps."""
-
-    position: np.ndarray
-    pairs: np.ndarray
-    deviation: np.ndarray
-
-    @property
-    def worst(self):
-        """Row of `pairs` that is furthest from rest."""
-        return int(np.abs(self.deviation).argmax())
 
 
 def at_rest(position, radius, pairs, grain_radius, overlap):
     """Bring the contacts of pairs (M, 2) to rest; grains that come to overlap on the way are contacts too.
 
-    position (N, 3), radius (N,); the overlap at rest is that of two grains of grain_radius. All lengths in m.
+    position (N, 3), radius (N,); the overlap at rest is that of two grains of grain_radius. All lengths in m. Returns
+    positions (N, 3), pairs (M, 2) of contacts, and how much deeper each (M,) is than at rest, in equilibrium overlaps.
     """
     moved = position.copy()
     for move in progress(range(MOST_MOVES + 1), "bringing contacts to rest", MOST_MOVES + 1):
         pairs = np.unique(np.sort(np.concatenate([pairs, touching(moved, radius)]), axis=1), axis=0)
         depth = equilibrium_overlaps(radius, pairs, grain_radius, overlap)
         missing = -surface_gaps(moved, radius, pairs) - depth
-        rest = Rest(moved, pairs, missing / depth)
-        if move == MOST_MOVES or np.abs(rest.deviation).max(initial=0.0) < AT_REST:
-            return rest
+        deviation = missing / depth
+        if move == MOST_MOVES or np.abs(deviation).max(initial=0.0) < AT_REST:
+            return moved, pairs, deviation
         separation = moved[pairs[:, 0]] - moved[pairs[:, 1]]
         normal = separation / np.linalg.norm(separation, axis=1)[:, None]
         # k ~ a_0 ~ R^(2/3), as depth^2 (packing.touching_distance)
         moved = moved + _smallest_motion(normal, pairs, missing, depth / overlap, len(radius))
-
-
-def unpressed(position, radius, pairs, grain_radius, overlap):
-    """Positions (N, 3) with the contacts of grains under pressure at rest; arguments as in at_rest(). Raises
-    PackingError where one stays deeper than DEEPEST or comes apart."""
-    rest = at_rest(position, radius, pairs, grain_radius, overlap)
-    if rest.deviation.min() > -1.0 and rest.deviation.max() < DEEPEST - 1:
-        return rest.position
-    raise PackingError(
-        f"the contacts cannot be brought to rest together: one overlaps by {1 + rest.deviation[rest.worst]:.3g} of the "
-        f"equilibrium; must be at most {DEEPEST:g}: a looser state"
-    )
 
 
 def _smallest_motion(normal, pairs, change, weight, grains):

@@ -94,12 +94,6 @@ class Checkpoint:
                 f"{error}; must be as it was written, or {self.run_folder}/{CHECKPOINT_FOLDER} removed"
             ) from None
 
-    def load_scene(self):
-        """Put the saved scene in the place of YADE's present one."""
-        from yade.wrapper import Omega
-
-        Omega().load(os.path.join(self.run_folder, self.scene))
-
 
 class CheckpointWriter:
     """Saves the running scene and a recorder's history every `interval` seconds of wall time.

@@ -1,5 +1,6 @@
 """From packings and parameters to YADE's bodies and engines."""
 
+import os
 from math import inf, pi
 
 import yade.wrapper as yade
@@ -100,7 +101,7 @@ def start(scene, schedule, recorder):
 
 def resume(scene, schedule, recorder, saved):
     """The same for the scene of a checkpoint, which has its engines and whose start has been sampled."""
-    saved.load_scene()
+    Omega().load(os.path.join(saved.run_folder, saved.scene))
     sampling.current = recorder
     engines = Omega().engines
     if scene.parameters.engine == "functors":
