@@ -1,7 +1,12 @@
 /* The whole state of a run as a row of numbers, for checkpoints that resume to the same bits. Neighbour lists are not in it: they are
- * made again. A change of what is transferred, or of its order, raises formatNumber. */
-#include "checkpoint_archive.hpp"
+ * made again. One list of what is transferred serves both directions (as in Boost.Serialization): the archive saves or restores. Numbers
+ * are doubles, whole ones (below 2^53) and flags among them; the last is a sum of all others' bits. A change of what is transferred, or of
+ * its order, raises formatNumber. */
 #include "dynamics.hpp"
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <type_traits>
 
 namespace contact_law {
 
@@ -11,20 +16,98 @@ namespace {
 	// at the end; 9: with counts of the run before
 	constexpr int formatNumber = 9;
 
+	// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
+	double sumOfBits(const std::vector<double>& numbers, std::size_t count)
+	{
+		std::uint64_t sum = 14695981039346656037u;
+		for (std::size_t k = 0; k < count; ++k) {
+			std::uint64_t bits;
+			std::memcpy(&bits, &numbers[k], sizeof bits);
+			sum = (sum ^ bits) * 1099511628211u;
+		}
+		return double(sum >> 11);
+	}
+
+	struct SavingArchive {
+		static constexpr bool restoring = false;
+		std::vector<double> numbers;
+
+		void header() { numbers.insert(numbers.end(), { magicNumber, double(formatNumber) }); }
+		template <class T> void number(T& value) { numbers.push_back(double(value)); }
+		// One that must be the same when the run is restored; its name and, if there is one, a number stand in the refusal.
+		template <class T> void same(const T& value, const char*, const char* = "", int = 0) { numbers.push_back(double(value)); }
+	};
+
+	struct RestoringArchive {
+		static constexpr bool restoring = true;
+		const std::vector<double>& from;
+		std::size_t at = 0;
+
+		void header()
+		{
+			const bool known = next() == magicNumber;
+			const double saved = known ? next() : 1; // the first format had no header
+			if (saved != formatNumber)
+				throw std::invalid_argument("the checkpoint of the grains is of format " + textOf(saved)
+				        + ", which another version wrote: it must be " + textOf(formatNumber));
+			requireSealed(from);
+		}
+		template <class T> void number(T& value) { value = T(next()); }
+		template <class T> void same(const T& value, const char* name, const char* of = "", int number = 0)
+		{
+			const double saved = next();
+			if (saved != double(value))
+				throw std::invalid_argument(std::string(name) + of + (*of ? std::to_string(number) : "")
+				        + " is another than in the checkpoint: it must be " + textOf(saved));
+		}
+		double next()
+		{
+			if (at == from.size())
+				throw std::invalid_argument(
+				        "the checkpoint of the grains is cut off: it must be whole, as O.save wrote it");
+			return from[at++];
+		}
+	};
+
+	template <class Archive, class... Numbers> void transferNumbers(Archive& archive, Numbers&... numbers)
+	{
+		(archive.number(numbers), ...);
+	}
+
+	// Structures of nothing but doubles, in the order of their members.
+	template <class Archive, class... Structures> void transferDoubles(Archive& archive, Structures&... all)
+	{
+		const auto transferOne = [&](auto& one) {
+			static_assert(std::is_trivially_copyable_v<std::decay_t<decltype(one)>> && sizeof one % sizeof(double) == 0);
+			double* numbers = reinterpret_cast<double*>(&one);
+			for (std::size_t k = 0; k < sizeof one / sizeof(double); ++k)
+				archive.number(numbers[k]);
+		};
+		(transferOne(all), ...);
+	}
+
+	template <class Archive, class T> void transferSize(Archive& archive, std::vector<T>& all)
+	{
+		std::size_t size = all.size();
+		archive.number(size);
+		all.resize(size);
+	}
+
+	template <class Archive> void transfer(Archive& archive, Grain& g)
+	{
+		transferNumbers(archive, g.x, g.y, g.z, g.vx, g.vy, g.vz, g.wx, g.wy, g.wz, g.fx, g.fy, g.fz, g.tx, g.ty, g.tz);
+	}
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
 		transferNumbers(archive, c.i, c.j);
-		transfer(archive, c.history);
-		transferNumbers(archive, c.drag, c.overlap);
-		transfer(archive, c.velocity);
+		transferDoubles(archive, c.history, c.drag, c.overlap, c.velocity);
 		if (Archive::restoring) c.constants = shared.constantsOf(c.i, c.j);
 	}
 	template <class Archive> void transfer(Archive& archive, Bond& b, const SharedState& shared)
 	{
 		transferNumbers(archive, b.i, b.j);
-		transfer(archive, b.history);
 		double neck = b.constants.neck;
-		transferNumbers(archive, b.rest, neck);
+		transferDoubles(archive, b.history, b.rest, neck);
 		if (Archive::restoring) b.constants = shared.bondOf(b.i, b.j, neck);
 	}
 
@@ -52,32 +135,26 @@ namespace {
 
 	template <class Archive> void transfer(Archive& archive, Constraints& constraints)
 	{
-		std::size_t size = constraints.grains.size();
-		archive.number(size);
-		constraints.grains.resize(size);
+		transferSize(archive, constraints.grains);
 		for (Constrained& c : constraints.grains) {
 			transferNumbers(archive, c.grain, c.blocked);
-			transfer(archive, c.force);
-			transfer(archive, c.torque);
+			transferDoubles(archive, c.force, c.torque);
 		}
 		archive.number(constraints.work);
 	}
 
 	template <class Archive, class OfGrain> void transferPushes(Archive& archive, std::vector<OfGrain>& all)
 	{
-		std::size_t size = all.size();
-		archive.number(size);
-		all.resize(size);
+		transferSize(archive, all);
 		for (OfGrain& push : all) {
 			archive.number(push.grain);
-			transfer(archive, push.force);
-			transfer(archive, push.torque);
+			transferDoubles(archive, push.force, push.torque);
 		}
 	}
 
 	template <class Archive> void transfer(Archive& archive, Domain& domain, const SharedState& shared)
 	{
-		transfer(archive, domain.cell);
+		transferDoubles(archive, domain.cell.size, domain.cell.inverse, domain.cell.rate);
 		domain.ledger.transfer(archive);
 		transfer(archive, domain.constraints);
 		transferPushes(archive, domain.outside.grains);
@@ -96,26 +173,33 @@ namespace {
 	}
 }
 
+std::vector<double> sealed(std::vector<double> numbers)
+{
+	numbers.push_back(sumOfBits(numbers, numbers.size()));
+	return numbers;
+}
+
+void requireSealed(const std::vector<double>& numbers)
+{
+	if (numbers.empty() || numbers.back() != sumOfBits(numbers, numbers.size() - 1))
+		throw std::invalid_argument("the checkpoint of the grains is damaged: it must be as O.save wrote it");
+}
+
 template <class Archive> void Ledger::transfer(Archive& archive)
 {
-	contact_law::transfer(archive, lost);
-	transferNumbers(archive, eventWork, meanField);
-	contact_law::transfer(archive, boundary);
+	transferDoubles(archive, lost, eventWork, meanField, boundary);
 	transferPushes(archive, early);
 }
 
 template <class Archive> void PlaneContacts::transfer(Archive& archive)
 {
 	for (std::size_t p = 0; p < positions.size(); ++p)
-		contact_law::transfer(archive, positions[p]), contact_law::transfer(archive, after[p]);
+		transferDoubles(archive, positions[p], after[p]);
 	archive.number(work);
-	std::size_t size = contacts.size();
-	archive.number(size);
-	contacts.resize(size);
+	transferSize(archive, contacts);
 	for (PlaneContact& c : contacts) {
 		transferNumbers(archive, c.grain, c.plane, c.side, c.before.touching, c.before.overlap, c.before.drag, c.before.twist);
-		for (Vec3<double>* v : { &c.n1, &c.point, &c.before.sliding, &c.before.rolling, &c.before.velocity })
-			contact_law::transfer(archive, *v);
+		transferDoubles(archive, c.n1, c.point, c.before.sliding, c.before.rolling, c.before.velocity);
 		if (Archive::restoring) c.constants = s.constantsOnPlane(c.grain, c.plane);
 	}
 }
@@ -123,7 +207,7 @@ template <class Archive> void PlaneContacts::transfer(Archive& archive)
 // What must be known before the grains can be laid out, and what must be as it was.
 template <class Archive> void Dynamics::transferLayout(Archive& archive)
 {
-	archive.header(magicNumber, formatNumber);
+	archive.header();
 	archive.same(count, "the number of bodies");
 	archive.same(domainCount(), "domains");
 	archive.same(int(options.cell.on), "O.periodic");
@@ -131,9 +215,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(shared.pairs.linearDamping, "linearDamping");
 	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
 	archive.same(shared.neck, "neck");
-	std::size_t necks = shared.necks.size();
-	archive.number(necks);
-	shared.necks.resize(necks);
+	transferSize(archive, shared.necks);
 	for (double& neck : shared.necks)
 		archive.number(neck);
 	archive.same(bool(shared.mechanisms & Sliding), "sliding");
@@ -172,12 +254,12 @@ template <class Archive> void Dynamics::transferState(Archive& archive)
 	archive.number(moved);
 	if (moved) shared.displaced.resize(shared.grains.size());
 	for (Vec3<double>& by : shared.displaced)
-		transfer(archive, by);
+		transferDoubles(archive, by);
 	transferNumbers(archive, contactUpdates, sizesWhenOrdered, stepsSinceTrial, orders);
 	transferNumbers(archive, countedBefore.contactUpdates, countedBefore.searches, countedBefore.distanceChecks, countedBefore.orders);
-	transfer(archive, shared.convective);
+	transferDoubles(archive, shared.convective);
 	for (PlaneInput& plane : shared.planes)
-		transfer(archive, plane.velocity);
+		transferDoubles(archive, plane.velocity);
 	for (auto& domain : domains)
 		transfer(archive, *domain, shared);
 }
@@ -195,7 +277,7 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
         : options(options_)
 {
 	prepare(grains, materials);
-	RestoringArchive from(saved);
+	RestoringArchive from { saved };
 	transferLayout(from);
 	loadGrains(grains);
 	makeDomains();

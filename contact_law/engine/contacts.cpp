@@ -87,56 +87,39 @@ std::vector<ContactNow> contactsNow(const Dynamics& dynamics)
 	return sorted;
 }
 
-double elasticForce(const Dynamics& dynamics, const ContactList& list, int slot, const Vec3<double>& separation)
-{
-	const PairConstants<double> c = dynamics.state().constantsOf(list.first(slot), list.second(slot));
-	ContactForces<double> f {};
-	normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
-	return f.normalForce;
-}
-
-double elasticForce(const Dynamics& dynamics, const BondList& list, int slot, const Vec3<double>& separation)
-{
-	const Bond b = list.get(slot, dynamics.state().commonBond);
-	return bondForces(b.constants, geometryOf(separation, b.rest), b.history).normalForce;
-}
-
 namespace {
-	double dragOf(const ContactList& list, int slot, const SharedState& shared) { return shared.hasDrag() ? list.drag(slot) : 0; }
-	double dragOf(const BondList&, int, const SharedState&) { return 0; }
-	double neckOf(const ContactList&, int, const SharedState&) { return 0; }
-	double neckOf(const BondList& list, int slot, const SharedState& shared)
+	void add(const ContactNow& c, NormalForces& to)
 	{
-		return list.get(slot, shared.commonBond).constants.neck;
+		to.grains.insert(to.grains.end(), { c.first, c.second });
+		to.forces.push_back(c.forces.normalForce + c.forces.drag);
+		to.necks.push_back(c.bonded ? c.bond.neck : 0);
 	}
 
 	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists)
 	{
 		NormalForces found;
-		const SharedState& shared = dynamics.state();
-		const std::size_t most = (domain.touching.*lists)[Interior].size() + (domain.touching.*lists)[FirstOwned].size();
-		found.grains.reserve(2 * most), found.forces.reserve(most), found.necks.reserve(most);
-		eachSlotOf(dynamics, domain, lists, [&](const auto& list, int slot, int first, int second) {
-			const Vec3<double> separation = shared.separationOf(dynamics.cell(), list.first(slot), list.second(slot));
-			found.grains.push_back(first);
-			found.grains.push_back(second);
-			found.forces.push_back(elasticForce(dynamics, list, slot, separation) + dragOf(list, slot, shared));
-			found.necks.push_back(neckOf(list, slot, shared));
-		});
+		eachSlotOf(dynamics, domain, lists,
+		        [&](const auto& list, int slot, int, int) { add(contactNow(dynamics, list, slot), found); });
 		return found;
 	}
 }
 
-std::vector<NormalForces> normalForces(const Dynamics& dynamics)
+NormalForces normalForces(const Dynamics& dynamics)
 {
 	const auto& domains = dynamics.parts();
-	std::vector<NormalForces> found(2 * domains.size());
+	std::vector<NormalForces> parts(2 * domains.size());
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (std::size_t d = 0; d < domains.size(); ++d) {
-		found[d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::contacts);
-		found[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::bonds);
+		parts[d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::contacts);
+		parts[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::bonds);
 	}
-	return found;
+	NormalForces all;
+	for (const NormalForces& part : parts) {
+		all.grains.insert(all.grains.end(), part.grains.begin(), part.grains.end());
+		all.forces.insert(all.forces.end(), part.forces.begin(), part.forces.end());
+		all.necks.insert(all.necks.end(), part.necks.begin(), part.necks.end());
+	}
+	return all;
 }
 
 Vec3<double> planePosition(const Dynamics& dynamics, int plane) { return dynamics.parts()[0]->planes.positions[plane]; }
@@ -160,11 +143,7 @@ int planeContactCount(const Dynamics& dynamics)
 NormalForces normalForcesOnPlanes(const Dynamics& dynamics)
 {
 	NormalForces found;
-	eachPlaneContact(dynamics, [&](const Domain& domain, const PlaneContact& c) {
-		const ContactForces<double> f = domain.planes.forcesOf(c);
-		found.grains.insert(found.grains.end(), { dynamics.given(c.grain), c.plane });
-		found.forces.push_back(f.normalForce + f.drag);
-	});
+	eachPlaneContact(dynamics, [&](const Domain& domain, const PlaneContact& c) { add(contactNow(dynamics, domain, c), found); });
 	return found;
 }
 

@@ -30,9 +30,6 @@ struct ContactNow {
 };
 ContactNow contactNow(const Dynamics&, const ContactList&, int slot);
 ContactNow contactNow(const Dynamics&, const BondList&, int slot);
-// Of the normal force the elastic part, with the pair's grains at this distance from each other; positive when repulsive [N].
-double elasticForce(const Dynamics&, const ContactList&, int slot, const Vec3<double>& separation);
-double elasticForce(const Dynamics&, const BondList&, int slot, const Vec3<double>& separation);
 
 template <class Lists, class Visit>
 void eachSlotOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists, Visit&& visit)
@@ -55,14 +52,13 @@ template <class Visit> void eachBond(const Dynamics& dynamics, Visit&& visit) { 
 // All of them by rising ids of what touches, the lower one of two grains first.
 std::vector<ContactNow> contactsNow(const Dynamics&);
 
-// Contacts and bonds of one domain: grains (first and second of each), normal forces [N], necks over the grains' radius (0: no bond).
+// Contacts: grains (first and second of each), normal forces [N], necks over the grains' radius (0: no bond).
 struct NormalForces {
 	std::vector<int> grains;
 	std::vector<double> forces, necks;
 };
-// The contacts of each domain, then the bonds of each; by all threads.
-std::vector<NormalForces> normalForces(const Dynamics&);
-// Contacts with planes: grain and plane of each, normal forces [N]; no necks.
+NormalForces normalForces(const Dynamics&); // the contacts of each domain, then the bonds of each; by all threads
+// Grain and plane of each contact.
 NormalForces normalForcesOnPlanes(const Dynamics&);
 
 // visit(domain, contact), of every grain's with a plane

@@ -190,6 +190,10 @@ private:
 	Vec3<double> mostCells { 0, 0, 0 }; // that a shift to the nearest image can be, periodic
 };
 
+// Numbers of a checkpoint with a sum of their bits at the end; std::invalid_argument where it is another, before any of them is an index.
+std::vector<double> sealed(std::vector<double> numbers);
+void requireSealed(const std::vector<double>&);
+
 // Throws std::invalid_argument for one that is unknown or that this machine lacks.
 const InstructionSet& instructionSet(const std::string& name);
 

@@ -1,18 +1,13 @@
 // The order in which grains are stored: the leaves of a k-d tree. Domains are its upper branches, groups lower ones.
 #include "contacts.hpp"
 #include <algorithm>
+#include <functional>
 #include <numeric>
 
 namespace contact_law {
 
 namespace {
 	constexpr int leaf = 4;
-
-	struct Branch {
-		int firstDomain, lastDomain; // the last one not among them
-		int first, last;             // grains
-		bool isOneDomain() const { return lastDomain - firstDomain == 1; }
-	};
 
 	using Positions = std::vector<Vec3<double>>;
 
@@ -41,37 +36,31 @@ void Dynamics::orderGrains(const Positions& positions)
 {
 	original.resize(count);
 	std::iota(original.begin(), original.end(), 0);
-	const auto cut = [&](const Branch& b) -> std::pair<Branch, Branch> {
-		const bool oneDomain = b.isOneDomain();
-		const int middleDomain = (b.firstDomain + b.lastDomain) / 2;
-		const int middle = oneDomain ? middleOf(b.first, b.last) : beginOf(middleDomain);
-		const int axis = widestAxis(positions, original.data() + b.first, original.data() + b.last);
-		std::nth_element(original.begin() + b.first, original.begin() + middle, original.begin() + b.last, [&](int i, int j) {
+	const auto cut = [&](int first, int middle, int last) { // grains
+		const int axis = widestAxis(positions, original.data() + first, original.data() + last);
+		std::nth_element(original.begin() + first, original.begin() + middle, original.begin() + last, [&](int i, int j) {
 			const double x = (&positions[i].x)[axis], y = (&positions[j].x)[axis];
 			return x != y ? x < y : i < j;
 		});
-		return { { b.firstDomain, oneDomain ? b.lastDomain : middleDomain, b.first, middle },
-			{ oneDomain ? b.firstDomain : middleDomain, b.lastDomain, middle, b.last } };
 	};
-	const auto cutDown = [&cut](const Branch& all, const auto& isDone) {
-		std::vector<Branch> branches { all }, done;
-		while (!branches.empty()) {
-			const Branch b = branches.back();
-			branches.pop_back();
-			if (isDone(b)) {
-				done.push_back(b);
-				continue;
-			}
-			const auto [lower, upper] = cut(b);
-			branches.push_back(lower);
-			branches.push_back(upper);
-		}
-		return done;
+	const std::function<void(int, int)> cutDomains = [&](int first, int last) { // domains
+		if (last - first == 1) return;
+		const int middle = (first + last) / 2;
+		cut(beginOf(first), beginOf(middle), beginOf(last));
+		cutDomains(first, middle);
+		cutDomains(middle, last);
 	};
-	const auto ofDomains = cutDown({ 0, domainCount(), 0, count }, [](const Branch& b) { return b.isOneDomain(); });
+	const std::function<void(int, int)> cutGrains = [&](int first, int last) {
+		if (last - first <= leaf) return;
+		const int middle = middleOf(first, last);
+		cut(first, middle, last);
+		cutGrains(first, middle);
+		cutGrains(middle, last);
+	};
+	cutDomains(0, domainCount());
 #pragma omp parallel for num_threads(threadCount())
-	for (std::size_t d = 0; d < ofDomains.size(); ++d)
-		cutDown(ofDomains[d], [](const Branch& b) { return b.last - b.first <= leaf; });
+	for (int d = 0; d < domainCount(); ++d)
+		cutGrains(beginOf(d), beginOf(d + 1));
 	for (int k = 0; k < count; ++k)
 		indexHere[original[k]] = k;
 }

@@ -75,9 +75,9 @@ inline Image nearestImage(const PeriodicCell& cell, Vec3<double>& separation)
  * kick belongs before its instant, half after it. */
 class BoundaryWork {
 public:
+	double done = 0;                // up to now, against the boundaries [J]
 	Vec3<double> kicks { 0, 0, 0 }; // sum over the contacts now of shift times force
 	Vec3<double> early { 0, 0, 0 }; // of it what belongs before this instant beyond the half
-	double done = 0;                // up to now, against the boundaries [J]
 
 	void add(const Vec3<double>& shift, const Vec3<double>& kick) { kicks = kicks + Images<double>::times(shift, kick); }
 	void addEarly(const Vec3<double>& shift, const Vec3<double>& kick, const Vec3<double>& before)

@@ -5,22 +5,15 @@
 namespace contact_law {
 
 namespace {
-	struct ByConstants {
-		bool operator()(const Material& a, const Material& b) const
-		{
-			for (const MaterialRow& row : materialList)
-				if (a.*row.member != b.*row.member) return a.*row.member < b.*row.member;
-			return false;
-		}
-	};
-
-	// Of each material the smallest and the largest grain.
+	// Of each material, which grains may have as objects of their own, the smallest and the largest grain.
 	std::vector<int> extremeGrains(const Dynamics& dynamics)
 	{
 		const SharedState& shared = dynamics.state();
-		std::map<Material, std::pair<int, int>, ByConstants> extremes;
+		std::map<std::array<double, std::size(materialList)>, std::pair<int, int>> extremes;
 		for (int k = 0; k < dynamics.grainCount(); ++k) {
-			auto& [smallest, largest] = extremes.emplace(shared.material[shared.kind[k]], std::pair(k, k)).first->second;
+			const Material& m = shared.material[shared.kind[k]];
+			const std::array key { m.young, m.poisson, m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime };
+			auto& [smallest, largest] = extremes.emplace(key, std::pair(k, k)).first->second;
 			if (shared.grainRadius[k] < shared.grainRadius[smallest]) smallest = k;
 			if (shared.grainRadius[k] > shared.grainRadius[largest]) largest = k;
 		}
@@ -126,6 +119,21 @@ namespace {
 		return (shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d))) / std::min(shared.radius[i], shared.radius[j]);
 	}
 	double relativeOverlap(const SharedState& shared, const PlaneContact& c) { return c.before.overlap / shared.radius[c.grain]; }
+
+	// The elastic part of the normal force, with the pair's grains at this distance from each other; positive when repulsive [N].
+	double elasticForce(const Dynamics& dynamics, const ContactList& list, int slot, const Vec3<double>& separation)
+	{
+		const PairConstants<double> c = dynamics.state().constantsOf(list.first(slot), list.second(slot));
+		ContactForces<double> f {};
+		normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
+		return f.normalForce;
+	}
+
+	double elasticForce(const Dynamics& dynamics, const BondList& list, int slot, const Vec3<double>& separation)
+	{
+		const Bond b = list.get(slot, dynamics.state().commonBond);
+		return bondForces(b.constants, geometryOf(separation, b.rest), b.history).normalForce;
+	}
 
 	double elasticForce(const PlaneContact& c)
 	{

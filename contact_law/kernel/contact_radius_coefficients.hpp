@@ -1,4 +1,5 @@
-// Written by fit_contact_radius.py: do not edit.
+// The root u = (a/a0)^(1/2) of 3u^4 - 2u = delta/delta0, as a polynomial in t: it interpolates the root at the 23 Chebyshev nodes, computed in
+// 50-digit arithmetic. (tests/kernel compares it with roots found another way.)
 #pragma once
 
 namespace contact_law {

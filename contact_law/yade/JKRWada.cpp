@@ -37,9 +37,7 @@ namespace {
 	{
 		require(value >= 0 && std::isfinite(value), what, value, (">= 0" + unit).c_str());
 	}
-}
 
-namespace {
 	constexpr Real planeRadius = std::numeric_limits<Real>::infinity();
 }
 
@@ -149,14 +147,10 @@ Real JKRWadaPhys::storedEnergy() const
 	return total(contact_law::storedEnergy(unsigned(springs), c, f, twist));
 }
 
-// Of a bond, of each mode no more than what breaks it.
 Real JKRWadaPhys::energyWhenTorn() const
 {
-	if (!bonded) return contact_law::letGo(unsigned(springs), constants->forKernel(), before());
-	const contact_law::BondConstants<double> b = bond->forKernel();
-	const auto energy = [&b](Real stiffness, Real squared) { return std::min(0.5 * stiffness * squared, b.breakingEnergy); };
-	return energy(b.normalStiffness, overlap * overlap) + energy(b.slidingStiffness, slidingDisplacement.squaredNorm())
-	        + energy(b.rollingStiffness, rollingDisplacement.squaredNorm()) + energy(b.twistingStiffness, twist * twist);
+	return bonded ? contact_law::bonds::held(bond->forKernel(), before())
+	              : contact_law::letGo(unsigned(springs), constants->forKernel(), before());
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
@@ -277,7 +271,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 {
 	if (!shapes.fit(*scene)) return true;
 	JKRWadaPhys& phys = *YADE_CAST<JKRWadaPhys*>(physics.get());
-	if (!phys.constants) return false; // refused by Ip2, which is asked again in the next step
+	if (!phys.constants) return false; // refused by Ip2, which is called again in the next step
 	const PairConstants<double> constants = phys.constants->forKernel();
 	const State& state1 = *(*scene->bodies)[interaction->getId1()]->state;
 	const State& state2 = *(*scene->bodies)[interaction->getId2()]->state;

@@ -49,7 +49,7 @@ void JKRWadaEngine::takeStep()
 // The forces that others put on the grains hold through this O.step.
 void JKRWadaEngine::takeForces()
 {
-	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains, current->dynamics.threadCount());
+	std::vector<contact_law::OutsideForce> now = current->forces.take(*scene, current->grains);
 	const auto onset = current->onset;
 	current->onset = Dynamics::Onset::Now;
 	if (now == current->outside) return;
@@ -280,14 +280,9 @@ bool JKRWadaEngine::hasStarted() const
 	return bool(current);
 }
 
-std::size_t JKRWadaEngine::bodyCount() const { return current->grains.size(); }
+void JKRWadaEngine::requireSameBodies() const { current->grains.requireSame(*Omega::instance().getScene()); }
 
-void JKRWadaEngine::readBodies(const SceneGrains::Columns& to) const
-{
-	current->grains.readNow(*Omega::instance().getScene(), current->dynamics.threadCount(), to);
-}
-
-std::vector<contact_law::NormalForces> JKRWadaEngine::normalForces() const { return contact_law::normalForces(current->dynamics); }
+contact_law::NormalForces JKRWadaEngine::normalForces() const { return contact_law::normalForces(current->dynamics); }
 
 contact_law::NormalForces JKRWadaEngine::normalForcesOnPlanes() const { return contact_law::normalForcesOnPlanes(current->dynamics); }
 

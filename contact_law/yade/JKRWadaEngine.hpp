@@ -74,11 +74,10 @@ public:
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as
 	// the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
-	// For JKRWadaSnapshot, from the first step on: the bodies as they are now, and the contacts by the ids of their bodies.
+	// For JKRWadaSnapshot, from the first step on: contacts by the order of their bodies' ids, where the bodies are still the same.
 	bool hasStarted() const;
-	std::size_t bodyCount() const;
-	void readBodies(const SceneGrains::Columns&) const;
-	std::vector<contact_law::NormalForces> normalForces() const;
+	void requireSameBodies() const;
+	contact_law::NormalForces normalForces() const;
 	contact_law::NormalForces normalForcesOnPlanes() const; // planes: Walls by rising id
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}

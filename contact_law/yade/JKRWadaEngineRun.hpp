@@ -2,7 +2,6 @@
 #pragma once
 #include "JKRWadaEngine.hpp"
 #include "SceneContacts.hpp"
-#include "StepWatch.hpp"
 #include <boost/weak_ptr.hpp>
 
 namespace yade {
@@ -50,12 +49,12 @@ public:
 	/* Those on grains in O.forces now, by rising grain; none is no entry (Walls keep their motion whatever pushes them). Unless a
 	 * ForceResetter does it, O.forces is emptied of what is not permanent: forces are held over one O.step. Throws
 	 * std::runtime_error, with one line, when one is not finite. */
-	static std::vector<contact_law::OutsideForce> take(Scene&, const SceneGrains&, int threads);
+	static std::vector<contact_law::OutsideForce> take(Scene&, const SceneGrains&);
 	/* After a step that was refused: engines before this one add their forces again, so those of now go, and with them what a
 	 * script has added, which cannot be told from them. */
 	static void takeBack(Scene&, const Engine& refused);
 	// Before the first step: what the last step of other engines left is dropped, or refused where it may be someone's wish.
-	static void dropThoseOfOtherEngines(Scene&, const SceneGrains&, int threads, bool ofContacts);
+	static void dropThoseOfOtherEngines(Scene&, const SceneGrains&, bool ofContacts);
 
 	// Permanent forces (O.forces.setPermF, setPermT), which YADE does not save: a row of seven numbers a body that has one.
 	static std::vector<Real> permanent(Scene&);
@@ -78,6 +77,30 @@ private:
 	};
 	static Load notPermanent(Scene&, int id);
 	std::vector<Load> before, after; // write(), of each body: what is not permanent
+};
+
+// Checks after each O.step whether the run is sound, while the bodies still hold the last good state.
+class StepWatch {
+public:
+	// Empty, or what is wrong, after `made` of `wanted` small steps to the given motions. energies: those now, or null when nobody
+	// wants them.
+	std::string wrong(const contact_law::Dynamics&, const std::vector<contact_law::GrainMotion>&, long made, long wanted,
+	        const contact_law::Energies* energies);
+	// A script has changed something: overlaps are checked after this step, and losses and the energies' sum are others.
+	void forget() { sumKnown = false, lostBefore = -1e300, stepsSinceCheck = stepsBetweenChecks; }
+
+	// For the start: two grains of which each reaches beyond the other's centre, or empty.
+	static std::string tooDeep(const contact_law::Dynamics&);
+
+private:
+	static constexpr long stepsBetweenChecks = 30; // of the overlaps, which take about half a small step
+
+	std::string wrongMotion(const contact_law::Dynamics&, const std::vector<contact_law::GrainMotion>&, long made, long wanted) const;
+	std::string wrongEnergies(const contact_law::Energies&, double contactEnergy);
+
+	long stepsSinceCheck = 0;
+	bool sumKnown = false;
+	double firstSum = 0, lostBefore = 0; // of the energies [J]
 };
 
 struct JKRWadaEngine::Run {

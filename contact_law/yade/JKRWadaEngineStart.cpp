@@ -132,7 +132,7 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
 	const bool inherits = again || (!continued && !(inherited.contacts.empty() && inherited.onPlanes.empty()));
 	const bool ofContacts = contacts.ofFunctors() || holder.isWritten() || SceneShapes::functorsActed(*scene);
-	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, threads, ofContacts);
+	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, ofContacts);
 	SceneCell cell;
 	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps);
 	options.convective = SceneCell::convective(*scene);

@@ -39,24 +39,7 @@ namespace {
 	struct Grains {
 		std::vector<int> ids;
 		std::vector<double> position, velocity, angularVelocity, radius;
-
-		explicit Grains(std::size_t count = 0)
-		        : ids(count)
-		        , position(3 * count)
-		        , velocity(3 * count)
-		        , angularVelocity(3 * count)
-		        , radius(count)
-		{
-		}
 	};
-
-	Grains grainsOf(const JKRWadaEngine& fused)
-	{
-		Grains all(fused.bodyCount());
-		fused.readBodies(
-		        { all.ids.data(), all.position.data(), all.velocity.data(), all.angularVelocity.data(), all.radius.data() });
-		return all;
-	}
 
 	/* asItIs: everything is of one moment. Otherwise NewtonIntegrator has left positions a step, and velocities half a step, ahead
 	 * of the forces: both are brought to the moment of the forces. */
@@ -136,13 +119,6 @@ namespace {
 		}
 	}
 
-	template <class T> std::vector<T> joined(const std::vector<NormalForces>& parts, std::vector<T> NormalForces::*member)
-	{
-		std::vector<T> all;
-		for (const NormalForces& part : parts)
-			all.insert(all.end(), (part.*member).begin(), (part.*member).end());
-		return all;
-	}
 }
 
 boost::python::dict JKRWadaSnapshot::read() const
@@ -157,22 +133,22 @@ boost::python::dict JKRWadaSnapshot::read() const
 	// within a step the fused engine is at its end already; after one the moment of the functors' forces was before it
 	if (started && fused->inStep()) result["time"] = scene.time + scene.dt;
 	if (!asItIs && scene.subStep < 0) result["time"] = scene.time - scene.dt;
-	const Grains grains = started ? grainsOf(*fused) : grainsOf(scene, asItIs);
+	if (started) fused->requireSameBodies();
+	const Grains grains = grainsOf(scene, asItIs);
 	const Planes planes(scene, asItIs);
-	std::vector<NormalForces> contacts(1);
-	NormalForces onPlanes;
+	NormalForces contacts, onPlanes;
 	if (started)
 		contacts = fused->normalForces(), onPlanes = fused->normalForcesOnPlanes();
 	else
-		readContacts(scene, grains, planes, contacts[0], onPlanes);
+		readContacts(scene, grains, planes, contacts, onPlanes);
 	result["ids"] = column(grains.ids);
 	result["position"] = column(grains.position);
 	result["velocity"] = column(grains.velocity);
 	result["angular_velocity"] = column(grains.angularVelocity);
 	result["radius"] = column(grains.radius);
-	result["contact_pairs"] = column(joined(contacts, &NormalForces::grains));
-	result["contact_normal_force"] = column(joined(contacts, &NormalForces::forces));
-	result["contact_neck"] = column(joined(contacts, &NormalForces::necks));
+	result["contact_pairs"] = column(contacts.grains);
+	result["contact_normal_force"] = column(contacts.forces);
+	result["contact_neck"] = column(contacts.necks);
 	if (!planes.ids.empty()) {
 		result["plane_axis"] = column(planes.axis);
 		result["plane_position"] = column(planes.position);

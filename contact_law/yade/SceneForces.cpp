@@ -1,5 +1,4 @@
 #include "JKRWadaEngineRun.hpp"
-#include "../engine/checkpoint_archive.hpp"
 #include "../engine/contacts.hpp"
 #include "Refusal.hpp"
 #include "SceneGrains.hpp"
@@ -13,24 +12,6 @@ using contact_law::OutsideForce;
 
 namespace {
 	constexpr std::size_t numbersSaved = 7; // id, force, torque
-
-	bool allFinite(const Vector3r& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
-
-	// Those of all bodies, without a call for each where they stand in a row, as they do once a force was added.
-	template <class Get> bool allZero(std::size_t bodies, int threads, const Get& get)
-	{
-		const Vector3r *first = &get(0), *last = &get(int(bodies) - 1);
-		if (first == last) return first->isZero(0); // the container is empty, or there is one body
-		const bool inRow = last - first == std::ptrdiff_t(bodies) - 1;
-		return forAll(bodies, threads, [&](std::size_t k) { return (inRow ? first[k] : get(int(k))).isZero(0); });
-	}
-
-	bool anyForce(Scene& scene, std::size_t bodies, int threads)
-	{
-		scene.forces.sync();
-		return !(allZero(bodies, threads, [&](int id) -> const Vector3r& { return scene.forces.getForce(id); })
-		        && allZero(bodies, threads, [&](int id) -> const Vector3r& { return scene.forces.getTorque(id); }));
-	}
 
 	// YADE keeps no room for them until one is set; valid after sync().
 	OutsideForce permanentOn(Scene& scene, int id)
@@ -109,15 +90,17 @@ void SceneForces::withdrawInStep(Scene& scene)
 		withdraw(scene);
 }
 
-std::vector<OutsideForce> SceneForces::take(Scene& scene, const SceneGrains& grains, int threads)
+std::vector<OutsideForce> SceneForces::take(Scene& scene, const SceneGrains& grains)
 {
 	std::vector<OutsideForce> found;
-	if (!anyForce(scene, scene.bodies->size(), threads)) return found;
+	scene.forces.sync();
+	const int last = int(scene.bodies->size()) - 1;
+	if (last > 0 && &scene.forces.getForce(0) == &scene.forces.getForce(last)) return found; // one zero for all: O.forces is empty
 	for (int grain = 0; grain < int(grains.size()); ++grain) {
 		const int id = grains.idOf(grain);
 		const Vector3r &force = scene.forces.getForce(id), &torque = scene.forces.getTorque(id);
 		if (force.isZero(0) && torque.isZero(0)) continue;
-		if (!allFinite(force) || !allFinite(torque))
+		if (!force.allFinite() || !torque.allFinite())
 			refuseInEngine("O.forces has a force or torque on " + bodyName(id)
 			        + " that is not a finite number: must be finite (O.forces.reset(False) clears it; a permanent one must be "
 			          "set to 0 before)");
@@ -136,11 +119,11 @@ void SceneForces::takeBack(Scene& scene, const Engine& refused)
 	scene.forces.reset(scene.iter);
 }
 
-void SceneForces::dropThoseOfOtherEngines(Scene& scene, const SceneGrains& grains, int threads, bool ofContacts)
+void SceneForces::dropThoseOfOtherEngines(Scene& scene, const SceneGrains& grains, bool ofContacts)
 {
 	if (scene.iter == 0 || hasForceResetter(scene)) return;
 	if (!ofContacts) {
-		for (const OutsideForce& f : take(scene, grains, threads)) {
+		for (const OutsideForce& f : take(scene, grains)) {
 			const OutsideForce permanent = permanentOn(scene, grains.idOf(f.grain));
 			if (f == OutsideForce { f.grain, permanent.force, permanent.torque }) continue;
 			refuseInEngine("O.forces has a force or torque on " + bodyName(grains.idOf(f.grain))

@@ -58,10 +58,9 @@ namespace {
 
 	bool isotropic(const Vector3r& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
 
-	[[noreturn]] void refuseChanged(const std::string& what, Real was, Real is)
+	[[noreturn]] void refuseChanged(const std::string& what)
 	{
-		refuseInEngine(
-		        what + " was changed after the start: it must stay " + text(was) + ", not " + text(is) + "; make a new engine");
+		refuseInEngine(what + " was changed after the start: it must stay as it was; make a new engine");
 	}
 }
 
@@ -246,7 +245,7 @@ bool SceneGrains::takeChanges(const Scene& scene, bool orientations, contact_law
 	requireSameMaterials();
 	const int threads = dynamics.threadCount();
 	const auto moved = [&](std::size_t k) { return !sameMotion(*bodies[k].state, written[k], orientations); };
-	const auto untouched = [&](std::size_t k) { return bodies[k].isThere(scene) && bodies[k].isSame() && !moved(k); };
+	const auto untouched = [&](std::size_t k) { return bodies[k].isThere(scene) && !bodies[k].changed() && !moved(k); };
 	bool any = false;
 	if (!(hasAllBodies(scene) && forAll(size(), threads, untouched))) {
 		requireSame(scene);
@@ -292,33 +291,25 @@ bool SceneGrains::hasBody(const Scene& scene, int id) const
 	return grain >= 0 ? bodies[grain].isThere(scene) : walls[planeOf(id)].isThere(scene);
 }
 
-void SceneGrains::readNow(const Scene& scene, int threads, const Columns& to) const
-{
-	const auto read = [&](std::size_t k) {
-		const Grain& grain = bodies[k];
-		to.id[k] = grain.id;
-		copy(grain.state->pos, to.position + 3 * k);
-		copy(grain.state->vel, to.velocity + 3 * k);
-		copy(grain.state->angVel, to.angularVelocity + 3 * k);
-		to.radius[k] = grain.sphere().radius;
-		return grain.isThere(scene) && grain.body->state == grain.state && grain.body->shape == grain.shape;
-	};
-	if (hasAllBodies(scene) && forAll(size(), threads, read)) return;
-	requireSame(scene);
-}
-
 bool SceneGrains::Kept::isThere(const Scene& scene) const { return std::size_t(id) < scene.bodies->size() && (*scene.bodies)[id] == body; }
 
-bool SceneGrains::Kept::isSame() const
+const char* SceneGrains::Kept::changed() const
 {
-	return body->state == state && body->shape == shape && body->material.get() == material && body->groupMask == mask
-	        && body->flags == flags;
+	return body->state != state                ? "state"
+	        : body->shape != shape             ? "shape"
+	        : body->material.get() != material ? "material"
+	        : body->groupMask != mask          ? "mask"
+	        : body->flags != flags             ? "flag (bounded or aspherical)"
+	                                           : nullptr;
 }
 
-bool SceneGrains::Grain::isSame() const
+const char* SceneGrains::Grain::changed() const
 {
-	return Kept::isSame() && state->mass == mass && state->inertia[0] == inertia && isotropic(state->inertia)
-	        && sphere().radius == radius;
+	if (const char* what = Kept::changed()) return what;
+	return sphere().radius != radius                                     ? "radius"
+	        : state->mass != mass                                        ? "mass"
+	        : state->inertia[0] != inertia || !isotropic(state->inertia) ? "moment of inertia"
+	                                                                     : nullptr;
 }
 
 void SceneGrains::requireSame(const Scene& scene) const
@@ -336,36 +327,19 @@ void SceneGrains::requireKept(const Scene& scene) const
 			refuseInEngine(bodyName(grain.id) + ((*scene.bodies)[grain.id] ? " was replaced by another" : " was erased")
 			        + " after the start: bodies must stay; make a new engine");
 	for (const Grain& grain : bodies)
-		if (!grain.isSame()) grain.refuseChange();
+		if (const char* what = grain.changed()) refuseChanged("the " + std::string(what) + " of " + bodyName(grain.id));
 	requireKeptPlanes(scene);
 }
 
 void SceneGrains::requireKeptPlanes(const Scene& scene) const
 {
 	for (const Plane& plane : walls) {
-		if (!(plane.isThere(scene) && plane.isSame() && static_cast<const Wall&>(*plane.shape).axis == plane.axis))
+		if (!(plane.isThere(scene) && !plane.changed() && static_cast<const Wall&>(*plane.shape).axis == plane.axis))
 			refuseInEngine(bodyName(plane.id)
 			        + ", a Wall, was replaced or changed after the start: it must stay as it was; make a new engine");
 		refuseIfAny(faultOf(*plane.body, scene, InPeriodic::AtRest));
 		requireFinite(*plane.body);
 	}
-}
-
-void SceneGrains::Grain::refuseChange() const
-{
-	const std::string who = bodyName(id), of = " of " + who;
-	const auto replaced = [&](const char* what) {
-		refuseInEngine(who + " was given another " + what + " after the start: it must keep its own; make a new engine");
-	};
-	if (body->state != state) replaced("state");
-	if (body->shape != shape) replaced("shape");
-	if (body->material.get() != material) replaced("material");
-	if (body->groupMask != mask) refuseChanged("the mask" + of, mask, body->groupMask);
-	if (sphere().radius != radius) refuseChanged("the radius" + of, radius, sphere().radius);
-	if (state->mass != mass) refuseChanged("the mass" + of, mass, state->mass);
-	for (int i = 0; i < 3; ++i)
-		if (state->inertia[i] != inertia) refuseChanged("the moment of inertia" + of, inertia, state->inertia[i]);
-	refuseInEngine(who + ": bounded or aspherical was changed after the start: it must stay as it was; make a new engine");
 }
 
 std::string SceneGrains::firstBodyOf(int kind) const
@@ -381,8 +355,7 @@ void SceneGrains::requireSameMaterials() const
 		const contact_law::Material now = kinds[k].material->forKernel();
 		for (const contact_law::MaterialRow& row : contact_law::materialList)
 			if (now.*row.member != was.*row.member)
-				refuseChanged(row.name + std::string(" of the material of ") + firstBodyOf(int(k)), was.*row.member,
-				        now.*row.member);
+				refuseChanged(row.name + std::string(" of the material of ") + firstBodyOf(int(k)));
 	}
 }
 

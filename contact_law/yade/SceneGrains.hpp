@@ -23,7 +23,7 @@ public:
 	std::vector<contact_law::Material> materials() const;
 	std::vector<contact_law::GrainMotion> motions() const;
 
-	// The bodies get these motions, whose place the ones written before take. Orientations only when asked for.
+	// The bodies get these motions, whose place the ones written before take. Orientations only where they are followed.
 	void write(std::vector<contact_law::GrainMotion>& now, bool orientations, int threads);
 	void writePlanes(const contact_law::Dynamics&);
 	// What the grains do to the planes: to O.forces.
@@ -34,13 +34,8 @@ public:
 	// Whether bodies were added to those that are as they were. Throws std::runtime_error where these were changed too.
 	bool hasMore(const Scene&) const;
 	bool hasBody(const Scene&, int id) const; // whether there is still the body of that id
-	// What the bodies are now, with what a script has changed, row by row: ids (size()), vectors (size(), 3), radii (size()). Throws
-	// likewise.
-	struct Columns {
-		int* id;
-		double *position, *velocity, *angularVelocity, *radius;
-	};
-	void readNow(const Scene&, int threads, const Columns&) const;
+	// Throws std::runtime_error where bodies were added or are others than those that were written.
+	void requireSame(const Scene&) const;
 	/* Gives a run what a script has moved, pushed or blocked since bodies and planes were written; whether there was anything.
 	 * Throws std::runtime_error for a change that the engine cannot follow: of bodies, their radius, mass, inertia, material, shape
 	 * or mask; of materials. */
@@ -65,15 +60,14 @@ private:
 
 		Kept(const shared_ptr<Body>&, int kind);
 		bool isThere(const Scene&) const;
-		bool isSame() const;
+		const char* changed() const; // what of it, or null
 	};
 	struct Grain : Kept {
 		Real radius, mass, inertia;
 
 		Grain(const shared_ptr<Body>&, int kind); // throws std::runtime_error for one that the engine cannot move
 		const Sphere& sphere() const { return static_cast<const Sphere&>(*shape); }
-		bool isSame() const;
-		[[noreturn]] void refuseChange() const;
+		const char* changed() const;
 	};
 	struct Plane : Kept {
 		int axis;
@@ -89,7 +83,6 @@ private:
 	bool hasAllBodies(const Scene& scene) const { return endOfIds(scene) == grainOfId.size() && !hasMoreIds(scene); }
 	int kindOf(const shared_ptr<JKRMat>&);
 	std::string firstBodyOf(int kind) const;
-	void requireSame(const Scene&) const;
 	void requireKept(const Scene&) const; // of the bodies that there were
 	void requireKeptPlanes(const Scene&) const;
 	void requireSameMaterials() const;

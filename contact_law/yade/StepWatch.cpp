@@ -1,6 +1,5 @@
-#include "StepWatch.hpp"
+#include "JKRWadaEngineRun.hpp"
 #include "Refusal.hpp"
-#include "SceneGrains.hpp"
 #include <algorithm>
 #include <cmath>
 

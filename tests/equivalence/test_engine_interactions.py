@@ -72,25 +72,6 @@ def test_interactions_are_those_of_the_functors(kind, steps, springs, zero):
     assert np.abs(np.array(utils.getStress(volume=1e-18)) - stress).max() < 1e-9 * np.abs(stress).max()
 
 
-def test_interactions_follow_the_contacts_and_stay_the_same_objects():
-    meeting("like", count=64)
-    engine_of_sub_steps(5, exportInteractions=True)
-    born, ended, kept = {}, 0, 0
-    for _ in range(80):
-        O.step()
-        now = {(i.id1, i.id2): i.iterMadeReal for i in O.interactions}
-        assert len(now) == O.engines[0].statistics()["contacts"]
-        ended += len(set(born) - set(now))
-        kept += sum(born[pair] == now[pair] for pair in set(born) & set(now))
-        born = now
-    assert ended > 3 and kept > 100
-    O.engines[0].exportInteractions = False
-    O.step()
-    assert len(O.interactions) == 0
-    O.engines[0].writeInteractions()
-    assert len(O.interactions) == O.engines[0].statistics()["contacts"]
-
-
 def test_exporting_changes_no_bit_and_checkpoints_go_on():
     def end(**options):
         meeting("unlike", count=64)

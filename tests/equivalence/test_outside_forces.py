@@ -125,23 +125,6 @@ def permanent_forces_are_there():
     return all(list(O.forces.permF(k)) == list(force) for k, (force, _) in pushes().items())
 
 
-def test_permanent_forces_that_are_saved_before_the_first_step_hold():
-    """YADE does not save O.forces: the engine does, also of a scene that was loaded and not stepped since."""
-
-    def end(saved):
-        five_grains()
-        O.run(3, True)
-        saved_and_loaded("stepped.xml")
-        push()
-        if saved:
-            saved_and_loaded("pushed.xml")
-        O.run(10, True)
-        return motion()
-
-    straight = end(False)
-    assert end(True) == straight and O.energy["externalWork"] != 0
-
-
 @pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
 def test_permanent_forces_may_be_changed_right_after_loading(change):
     """As if they were changed in the run that was never saved; the functors have them too."""

@@ -84,26 +84,6 @@ def test_exported_interactions_are_those_of_the_nearest_images():
     assert crossing > 5
 
 
-@pytest.mark.parametrize("homo", [0, 1, 2])
-def test_a_look_at_the_contacts_does_not_move_the_cell(homo):
-    """writeInteractions() before the first step, or the first step after loading, leaves a velocity gradient that
-    was set for when it would hold without the call."""
-
-    def end(look=None):
-        start("like", 1e-3, homo, mover="fused")
-        if look == "first":
-            O.engines[0].writeInteractions()
-        O.run(20, True)
-        O.cell.velGrad = Matrix3(2e-3 / unit, 0, 0, 0, 0, 0, 0, 0, 0)
-        if look == "loaded":
-            saved_and_loaded()
-            O.engines[0].writeInteractions()
-        O.run(20, True)
-        return positions().tolist(), O.cell.hSize[0, 0], energies(WORK)
-
-    assert end() == end("first") == end("loaded")
-
-
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_grains_touch_across_the_longest_side(axis):
     """Their nearest images follow from that side's own length."""

@@ -99,22 +99,6 @@ def test_sintered_twice_at_once_a_contact_keeps_the_first_neck(steps):
     assert bonds["functors"] == bonds["fused"] > 5
 
 
-def test_a_checkpoint_after_sintering_continues_where_losses_are_below_zero():
-    """Contacts at rest hold a negative potential: booked as disconnection, it is all that this scene has lost."""
-
-    def end(saved):
-        start(grains=cluster, speed=0.1, mover="fused")
-        run(20, {10: 0.5})
-        if saved:
-            saved_and_loaded()
-        record(20)
-        return positions().tolist(), energies()
-
-    straight = end(False)
-    assert straight == end(True)
-    assert sum(straight[1][name] for name in LOST) < -straight[1]["kinetic"]
-
-
 def test_grains_sintered_while_they_are_pressed_together_get_that_energy_back():
     """Contacts far beyond equilibrium hold more than their bonds do when these break: bondBreaking falls, all
     channels together stay, and the run goes on."""

@@ -38,26 +38,6 @@ def test_functors_then_engine_then_functors_is_one_run_to_first_order(kind, firs
     assert lost < 3e-2 and lost_less < 7e-3
 
 
-def test_a_pair_that_comes_apart_is_taken_over():
-    """Beyond pull-off by less than a step, then in the step that broke the contact, then free."""
-
-    def speed_after(steps):
-        new_scene(0.2 * unit)
-        grain((0, 0, 0), 1e-7, ice())
-        grain((1.99e-7, 0, 0), 1e-7, ice(), (8, 0, 0))
-        O.run(steps, True)
-        a, b = positions()[:, 0]
-        beyond, touching = b - a - 2e-7 > constants(ice(), 1e-7)["pullOffOverlap"], O.interactions.countReal()
-        if steps < 12:
-            fused_engine(subSteps=3)
-            O.step()
-        return O.bodies[1].state.vel[0] - O.bodies[0].state.vel[0], beyond, touching
-
-    alone = speed_after(12)[0]
-    for steps, touching, tolerance in ((9, 1, 0.03), (10, 0, 1e-9), (11, 0, 1e-9)):
-        assert speed_after(steps) == (pytest.approx(alone, rel=tolerance), True, touching)
-
-
 def test_a_saved_scene_of_the_functors_continues_with_the_engine():
     meeting("unlike")
     O.run(500, True)

@@ -43,13 +43,15 @@ def same(**other):
 UNDONE = {
     "O.bodies[{i}].shape.radius *= 2 | O.bodies[{i}].shape.radius /= 2": ["the radius of body 2 was changed"],
     "O.bodies[{i}].state.mass *= 2 | O.bodies[{i}].state.mass /= 2": ["the mass of body 2 was changed", "must stay"],
-    "O.bodies[{i}].mask = 2 | O.bodies[{i}].mask = 1": ["the mask of body 2 was changed", "must stay 1, not 2"],
-    "O.bodies[{i}].bounded = False | O.bodies[{i}].bounded = True": ["body 2: bounded or aspherical was changed"],
+    "O.bodies[{i}].mask = 2 | O.bodies[{i}].mask = 1": ["the mask of body 2 was changed"],
+    "O.bodies[{i}].bounded = False | O.bodies[{i}].bounded = True": [
+        "flag (bounded or aspherical) of body 2 was changed"
+    ],
     "kept = O.bodies[{i}].material; O.bodies[{i}].material = soft() | O.bodies[{i}].material = kept": [
-        "body 2 was given another material"
+        "the material of body 2 was changed"
     ],
     "kept = O.bodies[{i}].state; O.bodies[{i}].state = State() | O.bodies[{i}].state = kept": [
-        "body 2 was given another state"
+        "the state of body 2 was changed"
     ],
     "O.bodies[0].material.surfaceEnergy *= 2 | O.bodies[0].material.surfaceEnergy /= 2": ["surfaceEnergy", "body 0"],
     "engine().rolling = not engine().rolling | engine().rolling = not engine().rolling": ["rolling was changed"],

@@ -60,24 +60,6 @@ def test_what_is_saved_before_the_next_step_is_not_lost():
     assert (positions() == straight).all()
 
 
-@pytest.mark.parametrize("when", ["before O.save", "after O.load"])
-def test_a_grain_that_is_appended_around_a_checkpoint_is_taken_in(when):
-    def end(save):
-        chain(subSteps=5)
-        steps(10)
-        if save and when == "after O.load":
-            saved_and_loaded()
-            engine().prepare()
-        grain((2e-7, 2.05e-7, 0), 1e-7, O.bodies[0].material, (0, -2, 0))
-        if save and when == "before O.save":
-            saved_and_loaded()
-        steps(40)
-        return positions(), engine().statistics()["contacts"]
-
-    (x, contacts), (y, same_contacts) = end(True), end(False)
-    assert contacts == same_contacts > 3 and np.abs(x - y).max() < 1e-12 * 1e-7
-
-
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0.02, 0, 0), (-8.0, 1.0, 0), (0, 30.0, 0)])
 def test_a_touching_body_may_be_moved(mover, by):
@@ -232,18 +214,6 @@ def test_energies_that_were_cleared_count_anew():
     assert before["slidingDissipation"] > 0
     lost = {name: straight[name] - (before[name] if name in LOST else 0) for name in CHANNELS}
     assert anew == close_to(lost, "kinetic")
-
-
-def test_a_wall_may_be_moved_from_a_grain_at_rest():
-    """What a script's move does to the energy is no error of the step."""
-    new_scene(0.1 * unit, "fused")
-    wall = O.bodies.append(utils.wall(0, axis=2, material=ice()))
-    c = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice(), 1e-7, ice(), float("inf"))
-    grain((0, 0, 1e-7 - c["equilibriumOverlap"]), 1e-7, O.bodies[wall].material)
-    steps(5)
-    O.bodies[wall].state.pos -= Vector3(0, 0, 1e-8)
-    steps(5)
-    assert contact_law.snapshot()["plane_contacts"].size == 0 and O.bodies[1].state.vel.norm() < 1
 
 
 def test_a_slip_after_a_move_is_the_functors():

@@ -18,21 +18,6 @@ def strained():
     assert engine().statistics()["contacts"] > 20 and energies()["slidingDissipation"] > 0
 
 
-def test_losses_of_engines_that_never_tracked_are_booked():
-    strained()
-    before = sum(energies().values())
-    O.trackEnergy = False
-    for k in range(2):
-        O.engines = [JKRWadaEngine(subSteps=5)]
-        steps(60)
-        grain((9e-7, 9e-7, 9e-7 + k * 3e-7), 1e-7, O.bodies[0].material)  # taken in by another run of the engine
-        steps(1)
-    O.engines = [JKRWadaEngine(subSteps=5)]
-    O.trackEnergy = True
-    steps(1)
-    assert sum(energies().values()) == pytest.approx(before, rel=1e-2)
-
-
 @pytest.mark.parametrize("change", ["surfaceEnergy", "rolling"])
 def test_what_a_change_brings_to_the_contacts_is_booked_once(change):
     """Other materials, or a mechanism left out: the sum of all energies stays, to the second order of the step that
@@ -74,30 +59,6 @@ def test_a_pyrunner_may_set_the_engines(new, place):
     O.step()
     assert "JKRWadaEngine" in new or O.interactions.countReal() > 20
     steps(20)
-    assert len(contact_law.snapshot()["contact_pairs"]) > 20
-
-
-@pytest.mark.parametrize("saved", [False, True])
-@pytest.mark.parametrize("new", SUCCESSORS)
-def test_a_pyrunner_that_raises_loses_no_contacts(new, saved):
-    """YADE does not come to the engine behind it in that step; nor after O.load, where the others are next."""
-    strained()
-    contacts = engine().statistics()["contacts"]
-
-    def exchange():
-        O.engines = SUCCESSORS[new]()
-        if saved:
-            O.save("within.yade")
-        raise ValueError("of a script")
-
-    sys.modules["__main__"].exchange = exchange
-    O.engines = [PyRunner(command="exchange()", iterPeriod=1, nDo=1, initRun=True), engine()]
-    assert "of a script" in message_of(O.step)
-    if saved:
-        O.load("within.yade")
-    assert O.interactions.countReal() == contacts
-    O.dt /= 5 if "functor" in new else 1
-    steps(3)
     assert len(contact_law.snapshot()["contact_pairs"]) > 20
 
 
@@ -149,35 +110,6 @@ def test_grains_that_are_added_meet_the_others(periodic):
     (x, e, formed), (y, f, formed_late) = end(False), end(True)
     assert formed == formed_late > 0 and np.abs(x - y).max() < 1e-7 * 1e-7
     assert abs(sum(e.values()) - sum(f.values())) < 1e-7 * e["kinetic"]
-
-
-@pytest.mark.parametrize("call", ["O.save('within.yade')", "engine().writeInteractions()"])
-def test_a_pyrunner_may_append_a_grain_and_call_the_engine_in_a_cell_that_deforms(call):
-    """Before the engine's turn the cell is a step ahead of the grains: as if nothing had been called."""
-
-    def end(call):
-        chain()
-        periodic_cell(3e-6, 3e-6, 3e-6, velocity_gradient=(-1e5, 0, 0))
-
-        def append():
-            if O.iter == 5:
-                grain((1e-6, 1e-6, 1e-6), 1e-7, O.bodies[0].material)
-                exec(call.replace("engine()", "O.engines[1]"))
-
-        sys.modules["__main__"].append = append
-        O.engines = [PyRunner(command="append()", iterPeriod=1, initRun=True), engine()]
-        steps(20)
-        ends = [positions()]
-        if "save" in call:
-            O.load("within.yade")
-            while O.iter < 20:
-                O.step()
-            ends.append(positions())
-        return ends
-
-    (straight,) = end("")
-    for called in end(call):
-        assert np.abs(called - straight).max() < 1e-12 * 1e-7
 
 
 def test_counts_and_losses_go_on_when_grains_are_added():

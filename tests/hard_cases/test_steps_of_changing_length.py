@@ -171,28 +171,3 @@ def test_the_ledger_closes_with_second_order(drag):
         assert (np.sum(happened, axis=0) > 0).all()
     coarse, fine = errors
     assert coarse < 2e-3 and coarse / fine > (6 if drag else 9)
-
-
-def test_a_step_changed_and_changed_back_leaves_everything():
-    """Positions and velocities to rounding, whatever is called in between, and the same small step with other
-    subSteps too."""
-
-    def end(change):
-        chain(subSteps=4)
-        for _ in range(30):
-            O.step()
-            change()
-        return motion()
-
-    def there_and_back():
-        O.dt *= 0.3
-        engine().writeInteractions()
-        O.dt /= 0.3
-
-    def two_by_two():
-        engine().subSteps, O.dt = 2, O.dt / 2
-        steps(2)
-        engine().subSteps, O.dt = 4, O.dt * 2
-
-    assert far_apart(end(there_and_back), end(lambda: None)) < 1e-9
-    assert far_apart(end(two_by_two), end(O.step)) < 1e-9
