@@ -16,8 +16,7 @@ ROOMS = [str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "ben
 sys.path.insert(0, str(TOP))
 sys.path += ROOMS
 
-from yade_call import without_absolute_tolerance
-from yade_server import YadeServer
+from yade_server import YadeServer, without_absolute_tolerance
 
 without_absolute_tolerance()
 
@@ -27,7 +26,7 @@ class YadeFailed(AssertionError):
 
 
 SERVER = YadeServer()
-TO_CALL = f"import sys\nsys.path[:0] = {[str(TOP), *ROOMS]}\nfrom yade_call import answer\nanswer()\n"
+TO_CALL = f"import sys\nsys.path[:0] = {[str(TOP), *ROOMS]}\nfrom yade_server import answer\nanswer()\n"
 
 
 def call_in_yade(path, name, arguments, threads=1, timeout=300):

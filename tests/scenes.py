@@ -41,14 +41,6 @@ def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
     return [ForceResetter(), InsertionSortCollider(bounds, verletDist=verlet), loop, NewtonIntegrator(damping=0)]
 
 
-def engines_around(loop):
-    """functor_engines() with the functors of an InteractionLoop that was used."""
-    dispatchers = loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher
-    engines = functor_engines()
-    engines[2] = InteractionLoop(*(dispatcher.functors for dispatcher in dispatchers))
-    return engines
-
-
 def new_scene(dt, mover="functors", **options):
     """An empty scene with functor_engines(), or ("fused") the engine with the same options and its own; dt: the small
     step."""
@@ -107,7 +99,7 @@ def steps(number):
 
 
 def largest_change(looks, *works, every=1, step=lambda: O.step()):
-    """How far the sum of all channels and these works gets from what it is now [J]: looked at so often, each time after
+    """How far the sum of all channels and these works gets from what it is now [J]: after each of `looks` times
     `every` calls of step()."""
     first = total_energy(*works)
     largest = 0
@@ -124,20 +116,17 @@ def rms(numbers):
 
 def momenta():
     """(linear, angular momentum about the origin), with positions and velocities as the integrator holds them."""
-    p, l = np.zeros(3), np.zeros(3)
-    for b in O.bodies:
-        s = b.state
-        x, v = np.array(s.pos), np.array(s.vel)
-        p += s.mass * v
-        l += s.mass * np.cross(x, v) + np.array(s.inertia) * np.array(s.angVel)
-    return p, l
+    states = [b.state for b in O.bodies]
+    p = [s.mass * np.array(s.vel) for s in states]
+    l = [np.cross(s.pos, own) + np.multiply(s.inertia, s.angVel) for s, own in zip(states, p)]
+    return np.sum(p, axis=0), np.sum(l, axis=0)
 
 
 def momentum_scales():
-    """(linear, angular): sums of the grains' own, without their directions."""
-    p = [b.state.mass * np.linalg.norm(b.state.vel) for b in O.bodies]
-    l = [b.state.mass * np.linalg.norm(np.cross(b.state.pos, b.state.vel)) for b in O.bodies]
-    return sum(p), sum(l)
+    """(linear, angular): sums of the grains' own, without their directions and spins."""
+    p = [b.state.mass * np.array(b.state.vel) for b in O.bodies]
+    l = [np.cross(b.state.pos, own) for b, own in zip(O.bodies, p)]
+    return np.linalg.norm(p, axis=1).sum(), np.linalg.norm(l, axis=1).sum()
 
 
 def converging(count, seed, materials, radii, speed=5.0, spin=2e7):
@@ -217,12 +206,6 @@ def motion():
 def all_states():
     """motion() of all grains, their blocked degrees of freedom and orientations."""
     return [[*moved, b.state.blockedDOFs, list(b.state.ori)] for moved, b in zip(motion(), O.bodies)]
-
-
-def counts():
-    """The engine's, without what the lists of neighbours do."""
-    found = O.engines[0].statistics()
-    return {name: n for name, n in found.items() if name not in ("searches", "distanceChecks")}
 
 
 def saved_and_loaded(name="saved.yade.gz"):

@@ -60,7 +60,9 @@ def test_a_law_that_is_used_again_books_in_the_new_scene(away):
         if scene:
             exec(away)
             O.dt, O.trackEnergy = 0.1 * unit, True
-            O.engines = engines_around(loop)
+            dispatchers = loop.geomDispatcher, loop.physDispatcher, loop.lawDispatcher
+            O.engines = functor_engines()
+            O.engines[2] = InteractionLoop(*(dispatcher.functors for dispatcher in dispatchers))
         for x in (0, 1.985e-7):
             grain((x, 0, 0), 1e-7, ice())
         O.step()
