@@ -19,7 +19,7 @@
 # make conformance     this law, YADE's own, LAMMPS and LIGGGHTS against cases of two grains, as a table
 #
 # Tests
-# make check           formatting, kernel, physics and the fast half of the tests (a minute): while working
+# make check           formatting, kernel, physics and the fast half of the tests (a minute of two cores): while working
 # make test            all tests; make lint: formatting alone; make format formats
 # make test-newest     the analysis with the newest numpy, pandas and matplotlib of PyPI (NEWEST=python3.13: of this Python)
 # make test-docs       the site without a warning, and what the pages say is run
@@ -38,6 +38,7 @@
 
 .DELETE_ON_ERROR:
 .SUFFIXES:
+MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := all
 STUDIES := elastoplastic viscous compression sintered compressed atlas
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build known-yade always install uninstall image demo check test \
@@ -119,14 +120,14 @@ ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 OBJECTS        := $(YADE_OBJECTS) $(ENGINE_OBJECTS)
 PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
+UNKNOWN_YADE := must be one of $(YADE_DESCRIBED), or compile against its source: make YADE_INCLUDE=/path/to/yade
 all: deps
-	@$(MAKE) --no-print-directory known-yade
-	@$(MAKE) --no-print-directory $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
+	@$(MAKE) known-yade
+	@$(MAKE) $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
 build: $(PLUGIN) build/overlay
 	@echo "contact_law is built: $(PLUGIN)"
 
-UNKNOWN_YADE := must be one of $(YADE_DESCRIBED), or compile against its source: make YADE_INCLUDE=/path/to/yade
 known-yade:
 	@$(if $(YADE_INCLUDE)$(filter $(YADE_VERSION),$(YADE_DESCRIBED)),:,echo "make: YADE $(YADE_VERSION) is installed: $(UNKNOWN_YADE)" >&2; exit 1)
 
@@ -196,7 +197,7 @@ uninstall:
 IMAGE := build/image/contact_law
 IMAGE_SYSTEM ?= bookworm
 image:
-	@$(MAKE) --no-print-directory deps PACKAGES="mmdebstrap squashfs-tools git"
+	@$(MAKE) deps PACKAGES="mmdebstrap squashfs-tools git"
 	@mkdir -p $(dir $(IMAGE))
 	@git archive --prefix=source/ --add-virtual-file=source/analysis/COMMIT:$(COMMIT) -o $(IMAGE).source.tar HEAD
 	@mmdebstrap --quiet --variant=minbase --include="$(PACKAGES)" --dpkgopt=force-unsafe-io \
@@ -209,7 +210,7 @@ image:
 # ---- running it ----
 
 demo: all
-	@$(MAKE) --no-print-directory runs/demo/ended
+	@$(MAKE) runs/demo/ended
 	@$(PYTHON) -m analysis summary --long runs/demo
 	@$(PYTHON) -m analysis figures runs/demo
 	@$(PYTHON) -m analysis view runs/demo
@@ -218,20 +219,25 @@ demo: all
 runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yade_scripts/studies/demo.table
 	@yade -n -x yade_scripts/collide.py table=yade_scripts/studies/demo.table:4 out=runs/demo overwrite=1
 
-# A file's tests stay in one process: they share what they have run. CHECKED takes some two minutes of one core.
-CHECKED := tests/kernel tests/physics tests/conservation tests/equivalence/test_reference_law.py tests/analysis
-test check: all
-	$(if $(filter check,$@),@$(MAKE) --no-print-directory lint)
-	@$(PYTHON) -m pytest -p no:cacheprovider -n $(shell nproc) --dist loadfile --durations=8 $(if $(filter check,$@),-q $(CHECKED),tests)
+# make check: kernel, physics, conservation, and of equivalence, hard cases and analysis all but the four slowest files (half of all tests).
+CHECKED := $(wildcard $(patsubst %,tests/%/test_*.py,kernel physics conservation equivalence hard_cases analysis))
+SLOW    := equivalence/test_one_run equivalence/test_grain_order hard_cases/test_mechanisms_left_out analysis/test_atlas
+# A file's tests stay in one process: they share what they have run.
+PYTEST  := $(PYTHON) -m pytest -p no:cacheprovider
+AT_ONCE := -n $(shell nproc) --dist loadfile --durations=8
+check: all lint
+	@$(PYTEST) $(AT_ONCE) -q $(filter-out $(SLOW:%=tests/%.py),$(CHECKED))
+test: all
+	@$(PYTEST) $(AT_ONCE) tests
 
 EDITS ?= 1000
 test-edits: all
-	@EDITS=$(EDITS) $(PYTHON) -m pytest -q -p no:cacheprovider tests/hard_cases/test_random_edits.py
+	@EDITS=$(EDITS) $(PYTEST) -q tests/hard_cases/test_random_edits.py
 
 # The analysis as pip installs it, and its tests, in an environment of its own.
 NEWEST ?= $(PYTHON)
 test-newest:
-	@$(MAKE) --no-print-directory deps PACKAGES="python3-venv ffmpeg"
+	@$(MAKE) deps PACKAGES="python3-venv ffmpeg"
 	@$(NEWEST) -m venv --clear build/newest
 	@build/newest/bin/python -m pip -q install --disable-pip-version-check .[atlas] pytest cffconvert
 	@build/newest/bin/cffconvert --validate -i CITATION.cff
@@ -247,17 +253,17 @@ test-mutations: all
 	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
 test-viewer: all
-	@$(MAKE) --no-print-directory deps PACKAGES="chromium chromium-driver python3-selenium"
-	@$(PYTHON) -m pytest -p no:cacheprovider tests/analysis/test_viewer.py
+	@$(MAKE) deps PACKAGES="chromium chromium-driver python3-selenium"
+	@$(PYTEST) tests/analysis/test_viewer.py
 
 SYSTEMS ?= bookworm trixie
 test-debian:
-	@$(MAKE) --no-print-directory deps PACKAGES="debootstrap git $(if $(findstring -,$(SYSTEMS)),qemu-user-static binfmt-support)"
+	@$(MAKE) deps PACKAGES="debootstrap git $(if $(findstring -,$(SYSTEMS)),qemu-user-static binfmt-support)"
 	@$(PYTHON) tests/drivers/debian_systems.py $(SYSTEMS) $(if $(COMMANDS),--commands $(COMMANDS))
 
 # yade-tree: on Debian 13, which has YADE's source; from elsewhere: make test-debian SYSTEMS=trixie COMMANDS="'make yade-tree'"
 test-arm64 yade-tree test-sanitizers test-slurm: all
-	@$(MAKE) --no-print-directory deps PACKAGES="$(NEEDS)"
+	@$(MAKE) deps PACKAGES="$(NEEDS)"
 	@$(PYTHON) tests/drivers/$(or $(DRIVER),$(subst -,_,$(@:test-%=%))).py
 test-arm64: NEEDS := g++-aarch64-linux-gnu
 yade-tree: NEEDS := dpkg-dev git libopenmpi-dev bzip2
@@ -300,21 +306,21 @@ $(STUDIES:%=gallery-%): gallery-%:
 	@mkdir -p build && cp analysis/gallery/$*/runs.csv build/$*-runs.csv
 	@$(PYTHON) -m analysis study $* build/$*-runs.csv $(wildcard $(call runs,$*)) --figures analysis/gallery/$*
 	$(if $(filter atlas,$*),@$(PYTHON) -m analysis.atlas.make && $(PYTHON) -m analysis study $* analysis/gallery/$*/runs.csv --figures analysis/gallery/$*)
-	@$(MAKE) --no-print-directory gallery
+	@$(MAKE) gallery
 
 gallery:
-	@$(PYTHON) -m pytest -p no:cacheprovider -q tests/analysis/test_studies.py -k "gallery or pages"
+	@$(PYTEST) -q tests/analysis/test_studies.py -k "gallery or pages"
 
 # Some ten minutes of quiet cores (BENCH=--quick: three); the papers' scenes an hour the first time, when they are made.
 bench-peers: peers
 bench bench-papers bench-peers: all
-	@$(MAKE) --no-print-directory build/harness
+	@$(MAKE) build/harness
 	@$(PYTHON) tests/benchmarks/bench.py $(or $(@:bench-%=%),bench) $(SCENE:%=--scene %) $(BENCH)
 
 peers:
 	@for package in lammps liggghts openmpi-bin; do \
-		$(MAKE) --no-print-directory deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
-	@$(MAKE) --no-print-directory build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
+		$(MAKE) deps PACKAGES=$$package || echo "make peers: goes without $$package" >&2; done
+	@$(MAKE) build/lammps/installed || echo "make peers: goes without the newest LAMMPS" >&2
 
 ROOM := tests/conformance
 GIVEN := build/conformance
@@ -328,10 +334,10 @@ conformance: all peers
 # ---- documents, formatting ----
 
 docs test-docs: all
-	@$(MAKE) --no-print-directory deps PACKAGES="python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc"
+	@$(MAKE) deps PACKAGES="python3-sphinx python3-myst-parser python3-nbsphinx python3-ipykernel furo pandoc"
 	@PYTHONPATH=$(CURDIR) PYDEVD_DISABLE_FILE_VALIDATION=1 yade -n -x docs/build.py -q $(if $(filter test-docs,$@),-E -W --keep-going) -c docs . build/docs
 	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
-	$(if $(filter test-docs,$@),@$(PYTHON) -m pytest -q -p no:cacheprovider tests/drivers/documented_commands.py)
+	$(if $(filter test-docs,$@),@$(PYTEST) -q tests/drivers/documented_commands.py)
 	@echo build/docs/index.html
 
 # of one version on every machine: another one wants another format
@@ -352,7 +358,7 @@ format: build/lint/installed
 # Programs of PyPI, each in a folder of build/: folder, Debian's packages, PyPI's.
 define OF_PYPI
 build/$1/installed: Makefile
-	@$$(MAKE) --no-print-directory deps PACKAGES="python3-venv $2"
+	@$$(MAKE) deps PACKAGES="python3-venv $2"
 	@$$(PYTHON) -m venv build/$1
 	@build/$1/bin/python -m pip -q install --disable-pip-version-check $3
 	@touch $$@
