@@ -33,7 +33,7 @@ def constants(material1, radius1, material2=None, radius2=None, damping=0, slidi
 
 
 def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
-    """With all of YADE's shapes that meet spheres, of which the law refuses facets and boxes."""
+    """With all of YADE's shapes that meet spheres; the law refuses facets and boxes."""
     bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
     shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
     pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)

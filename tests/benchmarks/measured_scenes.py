@@ -118,7 +118,7 @@ PEERS = {"peers": Scene("two CPE, R 20, 3.16 m/s", "collision", {**CPE, "radius"
 
 # ---- small ones of every kind, for tests and sanitizers ----
 
-# drag; a periodic cell with damping; sintered bonds in a plane, some of which break
+# drag; a periodic cell with damping; sintered bonds in a plane, where some break
 DRAG = {"packing": "bpca", "grains": 300, "velocity": 60, "viscoelasticTime": "6e-12", "stepFraction": 0.2}
 CELL = {"grains": 128, "strainRate": "3e-6", "stepFraction": 0.3, "finalFilling": 0.1}
 BONDS = {"packing": "bcca", "grains": 64, "planar": 1, "neck": 0.3, "velocity": 60, "stepFraction": 0.1}

@@ -157,7 +157,7 @@ def compare_samples(results):
             raise ValueError(f"{name}: {len(values)} runs: must be {least} or more, all finite numbers")
         p = p_value(values, reference)
         why = f"p {p:.4f}; mean {mean_and_error(values)}, reference {mean_and_error(reference)}"
-        found[name] = dict(word="differs" if p < level else "not told apart", why=why, questions={})
+        found[name] = dict(word="differs" if p < level else "no difference found", why=why, questions={})
     return found
 
 
