@@ -16,7 +16,7 @@ def unit(of):
 
 
 def turning_rate(angle):
-    """[rad/s], as it stands in the file, for an angle in a quarter of a cycle: its first twentieth is before the limit."""
+    """[rad/s], as in the file, for an angle in a quarter of a cycle, whose first twentieth is before the limit."""
     return rounded(exact(rounded(angle, 6)) / exact(QUARTER))
 
 
