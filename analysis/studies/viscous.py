@@ -292,6 +292,11 @@ def _new(runs):
     for time, what in ((0.0, "no drag"), (DRAG, "6 ps")):
         v_fra = estimate(falls_at, where(runs, grains=500, viscoelasticTime=time))
         yield Row(f"threshold velocity of fragmentation, 500 grains, {what} [m/s]", v_fra)
+    none, drag = (where(runs, grains=SIZE, viscoelasticTime=time) for time in (0.0, DRAG))
+    yield Row("threshold velocity of fragmentation, 6 ps less no drag [m/s]", beside(falls_at, drag, none))
+    yield Row("mean growth efficiency, 63 m/s, 6 ps", estimate(over_offsets(), where(drag, velocity=V63)))
+    more = beside(over_offsets(), *(complete(where(of, velocity=V63)) for of in (drag, none)))
+    yield Row("mean growth efficiency, 63 m/s, 6 ps less no drag", more)
     fast = where(runs, grains=SIZE, viscoelasticTime=0.0, velocity=V63, twelfth=3.0)
     for way in ("sliding", "rolling"):
         yield Row(f"lost by {way}, 63 m/s, B_off² = 3/12, no drag [N_tot F_c δ_c]", estimate(in_units(way), fast))
