@@ -1,5 +1,6 @@
 # make          installs what is missing, and builds the plugin; make deps, make clean
 # make demo     a collision of two aggregates, printed and drawn (runs/demo)
+# make gpu      many collisions at once on a GPU (build/gpu/libdevice.so), where nvcc is
 # make install  puts everything into PREFIX (~/.local), for scripts of any folder, without this checkout; make uninstall removes it
 # make image    one file system with YADE, the plugin and the commands dust-..., for machines without Debian (root; half an hour):
 #               build/image/contact_law.tar (podman import, docker import) and contact_law.squashfs (apptainer exec)
@@ -41,7 +42,7 @@
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := all
 STUDIES := elastoplastic viscous compression sintered compressed atlas
-.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build known-yade always install uninstall image demo check test \
+.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build gpu known-yade always install uninstall image demo check test \
         test-edits test-newest test-dustpy disk test-mutations test-viewer test-debian test-arm64 yade-tree \
         test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \
         conformance docs test-docs lint format study-status tables
@@ -125,7 +126,7 @@ all: deps
 	@$(MAKE) known-yade
 	@$(MAKE) $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 
-build: $(PLUGIN) build/overlay
+build: $(PLUGIN) build/overlay build/gpu/libprocessor.so
 	@echo "contact_law is built: $(PLUGIN)"
 
 known-yade:
@@ -174,6 +175,15 @@ build/overlay: Makefile build/yade.list
 	@ln -sfn $(YADE_LIBRARIES)/py/* ../../../../../contact_law $(OVERLAY)/py/
 	@ln -sfn /usr/bin/yade build/bin/yade-double
 	@touch $@
+
+# Many collisions at once, by one source for processors and GPUs (DEVICE: nvcc's name of the GPU's kind).
+DEVICE ?= sm_90
+build/gpu/libprocessor.so: contact_law/gpu/ensemble.cu build/flags.list
+	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) -shared -x c++ $<)
+gpu: build/gpu/libdevice.so
+build/gpu/libdevice.so: $(wildcard contact_law/gpu/* contact_law/kernel/*)
+	@mkdir -p build/gpu
+	@nvcc -O3 -std=c++17 -arch=$(DEVICE) --expt-relaxed-constexpr -diag-suppress 20091 -Xcompiler -fPIC -shared contact_law/gpu/ensemble.cu -o $@
 
 HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/harness/%.o,$(wildcard tests/benchmarks/harness/*.cpp))
 
@@ -383,4 +393,4 @@ deps:
 clean:
 	rm -rf build
 
--include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d
+-include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d build/gpu/libprocessor.d

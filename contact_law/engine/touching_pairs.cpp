@@ -176,26 +176,6 @@ namespace {
 		write(r.torque1, out.torque1, k);
 		write(r.torque2, out.torque2, k);
 	}
-
-	/* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and
-	 * the pointers of `h` had not turned yet. Constants: of a contact or of a bond. */
-	template <class Constants>
-	ContactBefore aStepAgo(const Constants& c, double rest, const Vec3<double>& then, const ContactHistory<double>& h)
-	{
-		const double apart = std::sqrt(dot(then, then));
-		ContactBefore before;
-		before.touching = true;
-		before.overlap = rest - apart;
-		before.sliding = SlidingSpring::displacement(c, h.pointers, (1 / apart) * then);
-		before.rolling = RollingSpring::displacement(c, h.pointers);
-		before.twist = h.twist;
-		return before;
-	}
-
-	void turnPointers(ContactHistory<double>& h, const ContactMotion& m)
-	{
-		h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
-	}
 }
 
 ContactEvents::ContactEvents(SharedState& shared, const PeriodicCell& cell_, PairLists& lists_, TouchingPairs& touching_, Ledger& ledger_)

@@ -6,7 +6,7 @@ namespace contact_law {
 
 constexpr double largestFittedOverlap = 4;         // in units of the equilibrium overlap
 constexpr double fittedScale = 0.9104574503644945; // t = fittedScale * y - 1
-constexpr double contactRadiusCoefficients[23] = {
+TABLE_ON_GPU constexpr double contactRadiusCoefficients[23] = {
 	// of 1, t, t^2, ...
 	0.9295726463451909,
 	0.3158457918720127,

@@ -68,13 +68,13 @@ template <class T> struct ContactForces {
 	T contactRadiusRoot; // u = (a/a0)^(1/2)
 	Vec3<T> slidingDisplacement, rollingDisplacement;
 
-	static ContactForces none()
+	ON_GPU static ContactForces none()
 	{
 		const Vec3<T> zero { T(0.), T(0.), T(0.) };
 		return { T(0.), T(0.), zero, zero, zero, T(0.), zero, zero };
 	}
 	// Forces and displacements of no other springs than these; torques stay.
-	void keepOnly(unsigned mechanisms)
+	ON_GPU void keepOnly(unsigned mechanisms)
 	{
 		if (!(mechanisms & Sliding)) sliding = slidingDisplacement = none().sliding;
 		if (!(mechanisms & Rolling)) rollingDisplacement = none().rollingDisplacement;
@@ -118,7 +118,7 @@ struct ContactStepResult {
 	Dissipation dissipated;
 
 	// Of a contact that touched: whether it slipped or broke.
-	bool isEvent() const { return pointersMoved || !touching || dissipated.twisting != 0; }
+	ON_GPU bool isEvent() const { return pointersMoved || !touching || dissipated.twisting != 0; }
 };
 
 } // namespace contact_law

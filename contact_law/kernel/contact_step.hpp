@@ -139,6 +139,27 @@ inline ContactStepResult contactStepAt(const PairConstants<double>& c, LimitRule
 	return keptContact<mechanisms>(c, limit, m, g, before, history);
 }
 
+/* The moment a step ago of a pair whose springs rest at a distance `rest`: the first grain stood at `then` from the second, and the pointers of `h`
+ * had not turned yet. c: PairConstants, or a bond's. */
+template <class Constants>
+inline ContactBefore aStepAgo(const Constants& c, double rest, const Vec3<double>& then, const ContactHistory<double>& h)
+{
+	const double apart = std::sqrt(dot(then, then));
+	ContactBefore before;
+	before.touching = true;
+	before.overlap = rest - apart;
+	before.sliding = SlidingSpring::displacement(c, h.pointers, (1 / apart) * then);
+	before.rolling = RollingSpring::displacement(c, h.pointers);
+	before.twist = h.twist;
+	return before;
+}
+
+// Pointers turn with their grains through a step.
+inline void turnPointers(ContactHistory<double>& h, const ContactMotion& m)
+{
+	h.pointers = { turnedALittle(h.pointers.n1, m.dt * m.spin1), turnedALittle(h.pointers.n2, m.dt * m.spin2) };
+}
+
 template <unsigned mechanisms>
 inline ContactStepResult contactStep(const PairConstants<double>& c, LimitRule limit, const ContactMotion& m, const ContactBefore& before,
         ContactHistory<double>& history)
@@ -158,7 +179,7 @@ constexpr ContactStep contactStepWith[mechanismSets] = CONTACT_LAW_ALL_MECHANISM
  * Planes rest, or move at a velocity that contacts don't change, and do not turn. MODEL.md, "Planes". */
 struct Plane {
 	Vec3<double> position, normal, velocity; // of any of its points; unit vector towards the grain
-	Vec3<double> across(const Vec3<double>& v) const { return v - dot(v, normal) * normal; }
+	ON_GPU Vec3<double> across(const Vec3<double>& v) const { return v - dot(v, normal) * normal; }
 };
 
 // A grain's motion past a plane. What the plane's velocity does is not the grain's own motion: booked apart, as a periodic cell's boundaries.

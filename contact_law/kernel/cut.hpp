@@ -53,7 +53,7 @@ namespace cut {
 		const ContactMotion& motion;
 		double springsBefore; // fraction of the springs' forces that belongs before this instant without a cut
 
-		template <unsigned mode, class History> events::Kicks kicksOf(const History& h, double fraction) const
+		template <unsigned mode, class History> ON_GPU events::Kicks kicksOf(const History& h, double fraction) const
 		{
 			ContactForces<double> f = ContactForces<double>::none();
 			tangentialForces<mode>(constants, geometry, h, f);
@@ -62,13 +62,14 @@ namespace cut {
 			return kicks;
 		}
 		// The displacement whose force, given now, is what is missing of the passage.
-		template <class Displacement> Displacement acting(const Passage<Displacement>& passed, const Displacement& aStepAgo) const
+		template <class Displacement>
+		ON_GPU Displacement acting(const Passage<Displacement>& passed, const Displacement& aStepAgo) const
 		{
 			return 2 * springsBefore * passed.mean - 0.5 * aStepAgo;
 		}
 		/* A displacement a step ago, turned as a pair turns whose grains do not move against each other: what is left to its value now is
 		 * the motion that strains a new spring. */
-		Vec3<double> carriedAlong(const Vec3<double>& displacement) const
+		ON_GPU Vec3<double> carriedAlong(const Vec3<double>& displacement) const
 		{
 			const Vec3<double>& n = geometry.normal;
 			const Vec3<double> turn = cross(n, normalRate(n, geometry.inverseDistance, motion.velocity))
@@ -84,21 +85,21 @@ namespace cut {
 		Passage<Vec3<double>> passed {};
 
 		template <class SomePointers>
-		InStep(const Step& s, const Vec3<double>& before, const SomePointers& p)
+		ON_GPU InStep(const Step& s, const Vec3<double>& before, const SomePointers& p)
 		        : step(s)
 		        , aStepAgo(s.carriedAlong(before))
 		        , trial(Spring::displacement(s.constants, p, s.geometry.normal))
 		{
 		}
-		bool beyondLimit() const { return contact_law::beyondLimit<Spring>(step.constants, trial); }
-		template <class SomePointers> void cutIn(SomePointers& p)
+		ON_GPU bool beyondLimit() const { return contact_law::beyondLimit<Spring>(step.constants, trial); }
+		template <class SomePointers> ON_GPU void cutIn(SomePointers& p)
 		{
 			passed = passage(aStepAgo, trial, Spring::limit(step.constants));
 			p = displaced<Spring>(
 			        step.constants, p, passed.now - Spring::displacement(step.constants, p, step.geometry.normal));
 		}
 		// What it took of the motion; `added`: what its kick before this instant is beyond the ordinary one.
-		template <class History> double book(const History& h, events::Kicks& added) const
+		template <class History> ON_GPU double book(const History& h, events::Kicks& added) const
 		{
 			const auto& p = h.pointers;
 			const Vec3<double> now = Spring::displacement(step.constants, p, step.geometry.normal);

@@ -1,6 +1,7 @@
 // The energy channels, listed once, by the names that O.energy, run folders and figures use. A new channel is a member of one of the structures
 // below (of Dissipation, with an entry in lostMembers), a row of `channels`, and its label and colour in analysis/runs/format.py.
 #pragma once
+#include "numbers.hpp"
 #include <array>
 #include <cstddef>
 #include <iterator>
@@ -12,8 +13,8 @@ template <class T> struct StoredEnergy {
 	T normal, sliding, rolling, twisting;
 };
 template <class T>
-constexpr T StoredEnergy<T>::*storedMembers[] = { &StoredEnergy<T>::normal, &StoredEnergy<T>::sliding, &StoredEnergy<T>::rolling,
-	&StoredEnergy<T>::twisting };
+TABLE_ON_GPU constexpr T StoredEnergy<T>::*storedMembers[] = { &StoredEnergy<T>::normal, &StoredEnergy<T>::sliding,
+	&StoredEnergy<T>::rolling, &StoredEnergy<T>::twisting };
 
 // What contacts have dissipated [J]; a step's, or since the start.
 template <class T> struct DissipationOf {
@@ -23,9 +24,10 @@ template <class T> struct DissipationOf {
 	T bondStretching = T(0.), bondSliding = T(0.), bondRolling = T(0.), bondTwisting = T(0.); // sintered bonds that broke, by mode
 };
 template <class T>
-constexpr T DissipationOf<T>::*lostMembers[] = { &DissipationOf<T>::sliding, &DissipationOf<T>::rolling, &DissipationOf<T>::twisting,
-	&DissipationOf<T>::connection, &DissipationOf<T>::disconnection, &DissipationOf<T>::drag, &DissipationOf<T>::bondStretching,
-	&DissipationOf<T>::bondSliding, &DissipationOf<T>::bondRolling, &DissipationOf<T>::bondTwisting };
+TABLE_ON_GPU constexpr T DissipationOf<T>::*lostMembers[] = { &DissipationOf<T>::sliding, &DissipationOf<T>::rolling,
+	&DissipationOf<T>::twisting, &DissipationOf<T>::connection, &DissipationOf<T>::disconnection, &DissipationOf<T>::drag,
+	&DissipationOf<T>::bondStretching, &DissipationOf<T>::bondSliding, &DissipationOf<T>::bondRolling,
+	&DissipationOf<T>::bondTwisting };
 using Dissipation = DissipationOf<double>;
 static_assert(sizeof(StoredEnergy<double>) == std::size(storedMembers<double>) * sizeof(double)
                 && sizeof(Dissipation) == std::size(lostMembers<double>) * sizeof(double),
@@ -33,7 +35,7 @@ static_assert(sizeof(StoredEnergy<double>) == std::size(storedMembers<double>) *
 
 // The modes by which a sintered bond breaks.
 enum BondMode { ByStretching, BySliding, ByRolling, ByTwisting, bondModeCount };
-constexpr struct {
+TABLE_ON_GPU constexpr struct {
 	const char* name; // of the number of broken bonds
 	double Dissipation::*lost;
 } bondModes[bondModeCount] = {
@@ -96,26 +98,26 @@ inline std::array<double, channelCount> byChannel(const Energies& e)
 	return values;
 }
 
-template <class T> inline StoredEnergy<T>& operator+=(StoredEnergy<T>& sum, const StoredEnergy<T>& e)
+template <class T> ON_GPU inline StoredEnergy<T>& operator+=(StoredEnergy<T>& sum, const StoredEnergy<T>& e)
 {
 	for (const auto member : storedMembers<T>)
 		sum.*member = sum.*member + e.*member;
 	return sum;
 }
-template <class T> inline DissipationOf<T>& operator+=(DissipationOf<T>& sum, const DissipationOf<T>& d)
+template <class T> ON_GPU inline DissipationOf<T>& operator+=(DissipationOf<T>& sum, const DissipationOf<T>& d)
 {
 	for (const auto member : lostMembers<T>)
 		sum.*member = sum.*member + d.*member;
 	return sum;
 }
-inline double total(const StoredEnergy<double>& e)
+ON_GPU inline double total(const StoredEnergy<double>& e)
 {
 	double sum = 0;
 	for (const auto member : storedMembers<double>)
 		sum += e.*member;
 	return sum;
 }
-inline double total(const Dissipation& d)
+ON_GPU inline double total(const Dissipation& d)
 {
 	double sum = 0;
 	for (const auto member : lostMembers<double>)

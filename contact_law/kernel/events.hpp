@@ -18,27 +18,27 @@ namespace events {
 	struct Kicks {
 		Vec3<double> force { 0, 0, 0 }, torque1 { 0, 0, 0 }, torque2 { 0, 0, 0 };
 
-		void add(double ofNormal, double ofSprings, const ContactGeometry<double>& g, const ContactForces<double>& f)
+		ON_GPU void add(double ofNormal, double ofSprings, const ContactGeometry<double>& g, const ContactForces<double>& f)
 		{
 			force = force + (ofNormal * (f.normalForce + f.drag)) * g.normal + ofSprings * f.sliding;
 			torque1 = torque1 + ofSprings * f.torque1;
 			torque2 = torque2 + ofSprings * f.torque2;
 		}
-		void add(const Kicks& other, double times = 1)
+		ON_GPU void add(const Kicks& other, double times = 1)
 		{
 			force = force + times * other.force;
 			torque1 = torque1 + times * other.torque1;
 			torque2 = torque2 + times * other.torque2;
 		}
 		// Kinetic energy that they would give to grains at rest, twice over dt^2.
-		double squared(const ContactMotion& m) const
+		ON_GPU double squared(const ContactMotion& m) const
 		{
 			return dot(force, force) * m.inverseMass + dot(torque1, torque1) * m.inverseInertia1
 			        + dot(torque2, torque2) * m.inverseInertia2;
 		}
-		double work(const ContactMotion& m) const { return events::work(m, force, torque1, torque2); }
+		ON_GPU double work(const ContactMotion& m) const { return events::work(m, force, torque1, torque2); }
 		// That on a periodic cell's boundaries too.
-		double workOnPair(const ContactMotion& m) const { return work(m) + m.dt * dot(force, m.imageVelocity); }
+		ON_GPU double workOnPair(const ContactMotion& m) const { return work(m) + m.dt * dot(force, m.imageVelocity); }
 	};
 
 	// The history of a contact that formed a time `since` ago, carried to now.

@@ -3,6 +3,15 @@
 #pragma once
 #include <cmath>
 
+// A GPU runs the law as well: there nvcc needs marks on member functions and tables. (Free functions: gpu/block.hpp.)
+#ifdef __CUDACC__
+#define ON_GPU __host__ __device__
+#define TABLE_ON_GPU __device__
+#else
+#define ON_GPU
+#define TABLE_ON_GPU
+#endif
+
 namespace contact_law {
 
 template <class T> using MaskOf = decltype(T() < T()); // bool, or of a pack one for each of its doubles

@@ -54,7 +54,7 @@ template <class T> struct PairConstants {
 	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_MEMBER)
 	T inverseEquilibriumOverlap; // 1/delta0 [1/m], because a division is expensive; no attribute of its own
 
-	void complete() { inverseEquilibriumOverlap = 1 / equilibriumOverlap; } // from the attributes
+	ON_GPU void complete() { inverseEquilibriumOverlap = 1 / equilibriumOverlap; } // from the attributes
 };
 
 // A constant, and whether a step's forces read it.

@@ -11,31 +11,33 @@ namespace contact_law {
 struct SlidingSpring {
 	static constexpr unsigned mechanism = Sliding;
 
-	template <class Constants> static auto stiffness(const Constants& c) { return c.slidingStiffness; }
-	template <class T> static T limit(const PairConstants<T>& c) { return c.criticalSliding; } // zeta_crit (A22 eq 19)
+	template <class Constants> ON_GPU static auto stiffness(const Constants& c) { return c.slidingStiffness; }
+	template <class T> ON_GPU static T limit(const PairConstants<T>& c) { return c.criticalSliding; } // zeta_crit (A22 eq 19)
 
 	// zeta0 = r1 n1 - r2 n2; the displacement zeta is its part across the normal (A24 eq A1)
-	template <class Constants, class T> static Vec3<T> separation(const Constants& c, const Pointers<T>& p)
+	template <class Constants, class T> ON_GPU static Vec3<T> separation(const Constants& c, const Pointers<T>& p)
 	{
 		return c.radius1 * p.n1 - c.radius2 * p.n2;
 	}
 	// Against a plane (r2 infinite): r1 n1 from the grain's centre, less the anchor.
-	template <class Constants, class T> static Vec3<T> separation(const Constants& c, const PlanePointers<T>& p)
+	template <class Constants, class T> ON_GPU static Vec3<T> separation(const Constants& c, const PlanePointers<T>& p)
 	{
 		return c.radius1 * p.n1 - p.anchor;
 	}
 	template <class Constants, class SomePointers, class T>
-	static Vec3<T> displacement(const Constants& c, const SomePointers& p, const Vec3<T>& n)
+	ON_GPU static Vec3<T> displacement(const Constants& c, const SomePointers& p, const Vec3<T>& n)
 	{
 		const Vec3<T> zeta0 = separation(c, p);
 		return zeta0 - dot(zeta0, n) * n;
 	}
 	// Part of d(zeta)/dt across the normal n while the grains spin and the normal turns; linear in the pointers.
-	template <class T> static Vec3<T> rate(const PairConstants<T>& c, const Pointers<T>& p, const Vec3<T>& n, const Turning<T>& t)
+	template <class T>
+	ON_GPU static Vec3<T> rate(const PairConstants<T>& c, const Pointers<T>& p, const Vec3<T>& n, const Turning<T>& t)
 	{
 		return c.radius1 * cross(t.spin1, p.n1) - c.radius2 * cross(t.spin2, p.n2) - dot(separation(c, p), n) * t.normalRate;
 	}
-	template <class T> static Vec3<T> rate(const PairConstants<T>& c, const PlanePointers<T>& p, const Vec3<T>&, const Turning<T>& t)
+	template <class T>
+	ON_GPU static Vec3<T> rate(const PairConstants<T>& c, const PlanePointers<T>& p, const Vec3<T>&, const Turning<T>& t)
 	{
 		return c.radius1 * cross(t.spin1, p.n1);
 	}
@@ -44,7 +46,7 @@ struct SlidingSpring {
 	 * M_s1 = -r1 k_s n1 x zeta = r1 k_s (r2 n1 x n2 + z n1 x n_c),  z = zeta0.n_c.  The first part is left to the caller: returned
 	 * is its factor of n1 x n2. */
 	template <class Constants, class T>
-	static T addForces(const Constants& c, const ContactGeometry<T>& g, const Pointers<T>& p, ContactForces<T>& f)
+	ON_GPU static T addForces(const Constants& c, const ContactGeometry<T>& g, const Pointers<T>& p, ContactForces<T>& f)
 	{
 		const Vec3<T>& n = g.normal;
 		const Vec3<T> zeta0 = separation(c, p);
@@ -57,7 +59,7 @@ struct SlidingSpring {
 	}
 	// Against a plane -z/distance is 1: the force is -k_s zeta, and M_s1 = -r1 k_s n1 x zeta.
 	template <class Constants, class T>
-	static T addForces(const Constants& c, const ContactGeometry<T>& g, const PlanePointers<T>& p, ContactForces<T>& f)
+	ON_GPU static T addForces(const Constants& c, const ContactGeometry<T>& g, const PlanePointers<T>& p, ContactForces<T>& f)
 	{
 		f.slidingDisplacement = displacement(c, p, g.normal);
 		f.sliding = -(c.slidingStiffness * f.slidingDisplacement);
@@ -67,11 +69,12 @@ struct SlidingSpring {
 
 	/* The pointers with zeta another `by` along e (a unit vector across the normal) and the rolling displacement as it is, to first order: both
 	 * move oppositely by `by` over r1 + r2 (Wada's +-excess/(2 r) for equal radii; MODEL.md on unlike ones), on a plane the anchor alone. */
-	template <class T> static Pointers<T> moved(const PairConstants<T>& c, const Pointers<T>& p, const T& by, const Vec3<T>& e)
+	template <class T> ON_GPU static Pointers<T> moved(const PairConstants<T>& c, const Pointers<T>& p, const T& by, const Vec3<T>& e)
 	{
 		return { movedPointer(p.n1, by, c.radius1 + c.radius2, e), movedPointer(p.n2, -by, c.radius1 + c.radius2, e) };
 	}
-	template <class T> static PlanePointers<T> moved(const PairConstants<T>&, const PlanePointers<T>& p, const T& by, const Vec3<T>& e)
+	template <class T>
+	ON_GPU static PlanePointers<T> moved(const PairConstants<T>&, const PlanePointers<T>& p, const T& by, const Vec3<T>& e)
 	{
 		return { p, p.anchor - by * e };
 	}
