@@ -285,7 +285,7 @@ SIZE  ?= desk
 JOBS  ?= $(shell nproc)
 STUDY ?= elastoplastic
 table = $(if $(filter atlas,$1),runs/atlas,yade_scripts/studies/$1)-$(SIZE).table
-runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk -prediction,-$(SIZE)))
+runs  = runs/$1$(if $(filter atlas,$1),,$(filter-out -desk,-$(SIZE)))
 
 tables:
 	@$(PYTHON) yade_scripts/studies/tables.py

@@ -33,19 +33,20 @@ def made_cell(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(compressed, "RADIUS", 8)
     monkeypatch.setattr(compressed, "read_periodic_state", lambda path: diluted_crystal(0.4))
-    os.makedirs(os.path.join(compressed.cell(0.4, 3), "states"))
+    states = os.path.join(compressed.CELLS, "f0.4-s3", "states")
+    os.makedirs(states)
     os.makedirs(compressed.PACKINGS)
-    return open(os.path.join(compressed.cell(0.4, 3), "states", "000001.npz"), "w").close()
+    return open(os.path.join(states, "000001.npz"), "w").close()
 
 
 def test_both_spheres_have_the_filling_of_the_table(made_cell):
     compressed.cut_pair(0.4, 3)
-    pair = [packings.load(compressed.packing_file(0.4, 3, index)) for index in (0, 1)]
+    pair = list(map(packings.load, compressed.files_of(0.4, 3)))
     for packing in pair:
         assert packing.grains / 8**3 == packing.parameters["filling"] == pytest.approx(0.4, rel=compressed.TOLERANCE)
         assert (packing.parameters["cell"], packing.parameters["nominal"]) == (3, 0.4)
         assert packings.extent(packing) < 8.6 * R
     assert pair[0].grains != pair[1].grains or not np.allclose(pair[0].position, pair[1].position)
-    before = os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns
+    before = os.stat(compressed.files_of(0.4, 3)[1]).st_mtime_ns
     compressed.cut_pair(0.4, 3)
-    assert os.stat(compressed.packing_file(0.4, 3, 1)).st_mtime_ns == before
+    assert os.stat(compressed.files_of(0.4, 3)[1]).st_mtime_ns == before

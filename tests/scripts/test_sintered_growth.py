@@ -12,7 +12,7 @@ from running import PYTHON, TOP, call, collide
 from yade_scripts.packings import load
 from yade_scripts.run import table
 from yade_scripts.studies import sintered
-from yade_scripts.studies.sintered import Grown
+from yade_scripts.studies.sintered import Point
 
 
 @pytest.fixture
@@ -25,16 +25,15 @@ def small_growth(tmp_path, monkeypatch):
 
 def test_a_small_table_from_growth_to_report(small_growth, tmp_path):
     """Aggregates of 32 grains grown at 3 m/s, sintered, collided, and reported with the V_g that they grew at."""
-    grown = Grown(3.0, 7)
-    assert "contacts a grain" in sintered.grow(grown)
-    held = Grown(3.0, 7, limit="held")
-    sintered.grow(held)
-    assert load(held.file(0)).parameters["limit"] == "held"
-    packing = load(grown.file(0))
+    point, held = Point(0.7, "30", 3.0), Point(0.7, "30", 3.0, limit="held")
+    assert "contacts a grain" in sintered.grow(point, 7)
+    sintered.grow(held, 7)
+    assert load(held.grown(7, 0)).parameters["limit"] == "held"
+    packing = load(point.grown(7, 0))
     assert 29 <= packing.grains <= 32 and np.all(packing.position[:, 2] == 0)
     assert packing.parameters["growthVelocity"] == 3.0 and packing.parameters["generations"] == 1
-    cells = {**sintered.Point(0.7, "30", 3.0).row(7, "runs"), "duration": "2e-8", "states": 2}
-    small = {**sintered.Point(0, "30").row(7, "runs"), "grains": 16, "duration": "2e-8", "states": 2}
+    cells = {**point.row(7, "runs"), "duration": "2e-8", "states": 2}
+    small = {**Point(0, "30").row(7, "runs"), "grains": 16, "duration": "2e-8", "states": 2}
     table.write("tiny.table", [cells, small])
     for line in (2, 3):
         done = collide(tmp_path, f"table=tiny.table:{line}")

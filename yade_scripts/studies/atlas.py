@@ -2,9 +2,8 @@
 
     python3 yade_scripts/study.py atlas-cells -j 2             cells out of which compressed aggregates are cut; full
                                                                needs atlas-cells-full too
-    python3 yade_scripts/studies/atlas.py pilot [FIRST LAST]   runs/atlas-pilot.table and the packings of its rows; also
-                                                               desk, full; FIRST LAST: of rows FIRST to before LAST, in
-                                                               runs/atlas-pilot-FIRST-LAST.table
+    python3 yade_scripts/studies/atlas.py pilot                runs/atlas-pilot.table and the packings of its rows; also
+                                                               desk, full
     python3 yade_scripts/study.py runs/atlas-pilot.table -j 2
 
 make study-atlas SIZE=pilot does all of it. Row i is the same in every size, 500, 2,000 and 14,000 rows.
@@ -26,20 +25,18 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.stats import qmc
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, TOP)
-from scipy.stats import qmc
-
 from analysis.atlas.variables import CHOSEN, breaking_velocity
 from analysis.measures.periodic_cell import filling_factor
 from analysis.progress import progress
 from analysis.theory import ICE, SILICATE
 from yade_scripts import packings, step_choice
 from yade_scripts.experiments.collision import CollisionParameters, place
-from yade_scripts.materials import equilibrium_overlap
-from yade_scripts.materials import pair_constants as contact_constants
+from yade_scripts.materials import equilibrium_overlap, pair_constants
 from yade_scripts.packings.aggregate import AggregateParameters, make
 from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_state
 from yade_scripts.packings.packing import PackingError
@@ -59,10 +56,14 @@ GRAIN_RADIUS = 1e-7  # m
 TOLERANCE, LONGEST = 0.01, 0.2  # of the ledger, over K(0), in 95 % of runs; step [t0]
 MISSED = "1e-9"  # s: duration of pairs that never touch on straight ways
 STATES = 9  # of which two lie in the last quarter, which decides whether an outcome is decided
-KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places tried
+KEPT, PLACES = 0.8, 200  # of the grains that a compressed aggregate is to have; places or draws tried
 SEED_STEP = 10_000  # from one draw of a close-packed aggregate to the next
 # {most grains of a pair: (table of its cells, which have twice as many grains, seeds)}
 CELLS_OF = {1_024: ("atlas-cells", range(1, 11)), 4_096: ("atlas-cells-full", range(11, 21))}
+HEAD = """The collisions of the atlas. Written by yade_scripts/studies/atlas.py.
+Units: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0."""
+CELL_HEAD = """Cells that are compressed, out of which the atlas's compressed aggregates are cut.
+Units: strainRate: 1/t0; stepFraction: t0."""
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,7 @@ def step(scene):
     given = {**packing, "grains": scene.grains[0], "velocity": scene.velocity, "material": scene.material}
     given |= {"grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
     alike = _parsed(CollisionParameters, given)
-    energies = step_choice.energies_of(contact_constants(alike), scene.grains, scene.velocity)
+    energies = step_choice.energies_of(pair_constants(alike), scene.grains, scene.velocity)
     error = step_choice.scene_factor(alike) * step_choice.ledger_error(*energies)
     return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
 
@@ -227,47 +228,33 @@ def _fillings(folder, cells):
 
 def tables():
     """{size: (rows, head)} of the cells."""
-    head = "Cells that are compressed, out of which the atlas's compressed aggregates are cut.\n"
-    head += "Units: strainRate: 1/t0; stepFraction: t0."
     found = {}
     for most, (name, seeds) in CELLS_OF.items():
         row = {"!SCRIPT": "yade_scripts/compress.py", "grains": 2 * most, "strainRate": "1e-5", "finalFilling": 0.5}
         row |= {"stepFraction": 0.3, "states": 60, "threads": 1}
         rows = [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in seeds]
-        found[name.removeprefix("atlas-")] = rows, head
+        found[name.removeprefix("atlas-")] = rows, CELL_HEAD
     return found
-
-
-def write(size, first=0, last=None):
-    """Write the table of a size, or of its rows first to before last, and make the packings. Raises PackingError."""
-    part = () if last is None else (first, last)
-    os.makedirs(PACKINGS, exist_ok=True)
-    rows = []
-    for scene in progress(scenes(min(last or SIZES[size], SIZES[size]))[first:], "making packings"):
-        if scene.structure in FILLINGS and not all(map(os.path.exists, scene.files)):
-            maker = _close_packed if scene.structure == "cpe" else _compressed
-            for index, file in enumerate(scene.files):
-                packings.save(file, maker(scene, index))
-        cells = row(scene)
-        rows.append({**cells, "duration": MISSED} if never_touch(cells) else cells)
-    head = "The collisions of the atlas. Written by yade_scripts/studies/atlas.py.\n"
-    head += "Units: velocity: m/s; impact: r_c,tar + r_c,pro; grainRadius: m; stepFraction: t0."
-    table.write(f"runs/{'-'.join(['atlas', size, *map(str, part)])}.table", rows, head)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("size", choices=SIZES)
-    parser.add_argument("rows", nargs="*", type=int, metavar="FIRST LAST")
-    options = parser.parse_args()
-    rows, most = options.rows, SIZES[options.size]
-    if rows and not (len(rows) == 2 and 0 <= rows[0] < min(rows[1], most)):
-        parser.error(f"{rows}: must be two rising numbers, of {options.size}'s {most} rows")
+    size = parser.parse_args().size
     os.chdir(TOP)
+    os.makedirs(PACKINGS, exist_ok=True)
+    rows = []
     try:
-        write(options.size, *rows)
+        for scene in progress(scenes(SIZES[size]), "making packings"):
+            if scene.structure in FILLINGS and not all(map(os.path.exists, scene.files)):
+                maker = _close_packed if scene.structure == "cpe" else _compressed
+                for index, file in enumerate(scene.files):
+                    packings.save(file, maker(scene, index))
+            cells = row(scene)
+            rows.append({**cells, "duration": MISSED} if never_touch(cells) else cells)
     except PackingError as error:
         sys.exit(f"atlas.py: {error}")
+    table.write(f"runs/atlas-{size}.table", rows, HEAD)
 
 
 if __name__ == "__main__":

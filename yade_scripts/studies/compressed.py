@@ -11,6 +11,7 @@ places in the cell are drawn until that is so. A pair comes from one cell, in tw
 may share grains.
 """
 
+import argparse
 import os
 import sys
 from dataclasses import replace
@@ -24,7 +25,7 @@ from yade_scripts.packings.from_run import CutParameters, cut, read_periodic_sta
 from yade_scripts.packings.packing import PackingError
 
 CELLS, PACKINGS, COLLISIONS = "runs/compressed-cells", "runs/compressed-packings", "runs/compressed"
-FILLINGS, PAIRS = (0.4, 0.3), 30
+PAIRS = [(filling, seed) for seed in range(1, 31) for filling in (0.4, 0.3)]
 GRAINS, RATE = 8192, "1e-5"  # of a cell; 1/t0
 RADIUS = 20  # r, of the spheres; half the cell's edge is 22 r at 0.4
 TOLERANCE, PLACES = 0.01, 200  # of the filling; places tried
@@ -32,28 +33,23 @@ EXPONENTS = (5, 0, 10)  # i of 10^(0.1 i) m/s
 DURATION = "8e-7"  # s: compressed aggregates turn around later than CPE ones
 STEP, CELL_STEP = 0.2, 0.3  # t0
 
-
-def pairs():
-    """[(filling, seed)] of all pairs."""
-    return [(filling, seed) for seed in range(1, PAIRS + 1) for filling in FILLINGS]
-
-
-def cell(filling, seed):
-    """Run folder of a cell."""
-    return f"{CELLS}/f{filling:g}-s{seed}"
+CELL_HEAD = """Cells that are compressed, out of which spheres are cut (Oshiro et al. 2025).
+Units: strainRate: 1/t0; stepFraction: t0."""
+HEAD = """CPE and compressed aggregates of the same filling and size, head-on.
+Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
 
 
-def packing_file(filling, seed, index):
-    """Path of the packing of target (0) or projectile (1)."""
-    return f"{PACKINGS}/f{filling:g}-s{seed}{('', '-b')[index]}.npz"
+def files_of(filling, seed):
+    """Paths of the packings of target and projectile."""
+    return [f"{PACKINGS}/f{filling:g}-s{seed}{end}.npz" for end in ("", "-b")]
 
 
 def cut_pair(filling, seed):
     """Make both spheres of a cell, where they are missing. Raises PackingError."""
-    files = [packing_file(filling, seed, index) for index in (0, 1)]
+    files, cell = files_of(filling, seed), f"{CELLS}/f{filling:g}-s{seed}"
     if all(map(os.path.exists, files)):
         return
-    folder = os.path.join(cell(filling, seed), "states")
+    folder = os.path.join(cell, "states")
     if not os.path.isdir(folder):
         raise PackingError(f"{folder}: no states; must be those of a cell: run the table compressed-cells first")
     state, places = read_periodic_state(os.path.join(folder, max(os.listdir(folder)))), iter(range(PLACES))
@@ -63,30 +59,28 @@ def cut_pair(filling, seed):
             if abs(found.parameters["filling"] / filling - 1) <= TOLERANCE:
                 break
         else:
-            raise PackingError(
-                f"{cell(filling, seed)}: no sphere of that filling in {PLACES} places; must be another cell"
-            )
+            raise PackingError(f"{cell}: no sphere of that filling in {PLACES} places; must be another cell")
         about = {**found.parameters, "cell": seed, "nominal": filling}
         packings.save(file, replace(found, parameters=about))
 
 
-def cell_rows():
+def cells():
     """Rows of the cells' table."""
     row = {"!SCRIPT": "yade_scripts/compress.py", "grains": GRAINS, "strainRate": RATE, "stepFraction": CELL_STEP}
     found = []
-    for filling, seed in pairs():
-        own = {"finalFilling": f"{filling:g}", "states": 2, "seed": seed, "threads": 1, "out": cell(filling, seed)}
-        found.append({"description": f"f{filling:g}-s{seed}", **row, **own})
+    for filling, seed in PAIRS:
+        name = f"f{filling:g}-s{seed}"
+        own = {"finalFilling": f"{filling:g}", "states": 2, "seed": seed, "threads": 1, "out": f"{CELLS}/{name}"}
+        found.append({"description": name, **row, **own})
     return found
 
 
-def collision_rows():
+def collisions():
     """Rows of the collisions' table: each pair of both kinds after the other."""
     found = []
-    for i, (filling, seed) in product(EXPONENTS, pairs()):
-        files = [packing_file(filling, seed, index) for index in (0, 1)]
+    for i, (filling, seed) in product(EXPONENTS, PAIRS):
         cpe = {"packing": "cpe", "filling": filling, "radius": RADIUS, "seed": seed}
-        compressed = {"packing": "file", "file": files[0], "projectileFile": files[1]}
+        compressed = {"packing": "file", **dict(zip(("file", "projectileFile"), files_of(filling, seed)))}
         for kind, given in (("cpe", cpe), ("compressed", compressed)):
             name = f"{kind}-f{filling:g}-i{i}-s{seed}"
             last = {"duration": DURATION, "stepFraction": STEP, "threads": 1, "out": f"{COLLISIONS}/{name}"}
@@ -94,32 +88,23 @@ def collision_rows():
     return found
 
 
-CELL_HEAD = """Cells that are compressed, out of which spheres are cut (Oshiro et al. 2025).
-Units: strainRate: 1/t0; stepFraction: t0."""
-HEAD = """CPE and compressed aggregates of the same filling and size, head-on.
-Units: radius: grain radii; velocity: m/s; duration: s; stepFraction: t0."""
-
-
 def tables():
     """{size: (rows, head)}."""
-    return {"cells": (cell_rows(), CELL_HEAD), "desk": (collision_rows(), HEAD)}
+    return {"cells": (cells(), CELL_HEAD), "desk": (collisions(), HEAD)}
 
 
-def main(arguments):
-    if arguments == ["cut"]:
-        os.chdir(TOP)
-        os.makedirs(PACKINGS, exist_ok=True)
-        try:
-            for filling, seed in progress(pairs(), "cutting spheres"):
-                cut_pair(filling, seed)
-        except PackingError as error:
-            sys.exit(f"compressed.py: {error}")
-    elif "--help" in arguments:
-        print(__doc__)
-    else:
-        print("compressed.py: must be called with cut; --help says more", file=sys.stderr)
-        sys.exit(2)
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["cut"])
+    parser.parse_args()
+    os.chdir(TOP)
+    os.makedirs(PACKINGS, exist_ok=True)
+    try:
+        for pair in progress(PAIRS, "cutting spheres"):
+            cut_pair(*pair)
+    except PackingError as error:
+        sys.exit(f"compressed.py: {error}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

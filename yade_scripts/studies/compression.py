@@ -10,64 +10,52 @@ every set first."""
 # 0.1 and to 2 % above, with damping and without, less than seeds differ (docs/measurements.md).
 STEP = 0.3
 FIDUCIAL = {"grains": 16384, "strainRate": "3e-7"}
-RATES = ("1e-7", "3e-7", "1e-6", "3e-6", "1e-5")
-ROLLING = ("2e-10", "4e-10", "16e-10", "32e-10")  # m; beside ice's 8e-10
-DAMPING = ({"linearDamping": "0"}, {"linearDamping": "0.1"})
+BASE = {"grains": 1024, "strainRate": "1e-6"}  # of what varies in desk
+ROLLING = [{"criticalRolling": rolling} for rolling in ("2e-10", "4e-10", "16e-10", "32e-10")]  # m; ice: 8e-10
+DAMPING = [{"linearDamping": "0"}, {"linearDamping": "0.1"}]
 SILICATE = {"material": "silicate"}
-
-# Sets of parameters of the desk study, and how many clusters of each; 1024 grains at 1e-6 are the base of what varies.
-BASE = {"grains": 1024, "strainRate": "1e-6"}
-DESK = (
-    [({**BASE, "strainRate": rate}, 4 if rate != "1e-7" else 2) for rate in ("1e-6", "1e-5", "3e-6", "3e-7", "1e-7")]
-    + [({**BASE, **damping}, 4) for damping in DAMPING]
-    + [({**BASE, "criticalRolling": rolling}, 4) for rolling in ROLLING]
-    + [({**BASE, "stepFraction": 0.1}, 2)]
-    + [({**BASE, "finalFilling": filling, "stretch": "x"}, 2) for filling in ("0.1", "0.2", "0.3", "0.4")]
-    + [({**BASE, "finalFilling": "0.35", "stretch": "xyz"}, 1), ({**BASE, "finalFilling": "0.64"}, 2)]
-    + [({"grains": 4096, "strainRate": "3e-7"}, 4), ({"grains": 4096, "strainRate": "3e-7", **SILICATE}, 3)]
-    + [({**FIDUCIAL}, 3)]
-)
-FULL = (
-    [({**FIDUCIAL, "strainRate": rate}, 10) for rate in RATES[::-1]]
-    + [({**FIDUCIAL, "grains": grains}, 10) for grains in (1024, 4096)]
-    + [({**FIDUCIAL, **damping}, 10) for damping in DAMPING]
-    + [({**FIDUCIAL, "criticalRolling": rolling}, 10) for rolling in ROLLING]
-    + [({**FIDUCIAL, **SILICATE}, 10)]
-)
-# Clusters beside those of the desk, to where K13's law ends and the bin around 0.1: above it the paper claims nothing.
+STRETCHED = [{"finalFilling": filling, "stretch": "x"} for filling in ("0.1", "0.2", "0.3", "0.4")]
+# To where K13's law ends and the bin around 0.1: above it the paper claims nothing.
 TO_LAW = {"strainRate": "3e-7", "finalFilling": "0.12"}
-OWN = (
-    [({**TO_LAW, "grains": 16384}, range(2, 11))]
-    + [({**TO_LAW, "grains": 1024, "strainRate": rate}, range(5, 9)) for rate in ("3e-7", "1e-5")]
-    + [({**TO_LAW, "grains": 4096}, range(2, 5))]
-    + [({**BASE, "finalFilling": "0.12", **rolling}, range(5, 9)) for rolling in ({}, {"criticalRolling": "4e-10"})]
-)
+
+# [(parameters, seeds)]
+DESK = [
+    *(({**BASE, "strainRate": rate}, range(1, 5)) for rate in ("1e-6", "1e-5", "3e-6", "3e-7")),
+    ({**BASE, "strainRate": "1e-7"}, (1, 2)),
+    *(({**BASE, **varied}, range(1, 5)) for varied in DAMPING + ROLLING),
+    *(({**BASE, **varied}, (1, 2)) for varied in [{"stepFraction": 0.1}, *STRETCHED]),
+    ({**BASE, "finalFilling": "0.35", "stretch": "xyz"}, [1]),
+    ({**BASE, "finalFilling": "0.64"}, (1, 2)),
+    ({**FIDUCIAL, "grains": 4096}, range(1, 5)),
+    ({**FIDUCIAL, "grains": 4096, **SILICATE}, (1, 2, 3)),
+    (FIDUCIAL, (1, 2, 3)),
+]
+RATES = [{"strainRate": rate} for rate in ("1e-5", "3e-6", "1e-6", "3e-7", "1e-7")]
+FEWER = [{"grains": 1024}, {"grains": 4096}]
+FULL = [({**FIDUCIAL, **varied}, range(1, 11)) for varied in RATES + FEWER + DAMPING + ROLLING + [SILICATE]]
+OWN = [  # beside the desk's
+    ({**TO_LAW, "grains": 16384}, range(2, 11)),
+    *(({**TO_LAW, "grains": 1024, "strainRate": rate}, range(5, 9)) for rate in ("3e-7", "1e-5")),
+    ({**TO_LAW, "grains": 4096}, range(2, 5)),
+    *(({**BASE, "finalFilling": "0.12", **rolling}, range(5, 9)) for rolling in ({}, {"criticalRolling": "4e-10"})),
+]
 
 SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolling": "xi", "stepFraction": "step"}
-
-
-def name(parameters, seed):
-    """Name of a row and its run folder, such as ice-N1024-Cv1e-6-k0-s1."""
-    parts = [parameters.get("material", "ice")]
-    parts += [f"{SHORT[key]}{parameters[key]}" for key in SHORT if key in parameters]
-    parts += [f"to{parameters['finalFilling']}"] if "finalFilling" in parameters else []
-    parts += [f"stretch-{parameters['stretch']}"] if "stretch" in parameters else []
-    return "-".join([*parts, f"s{seed}"])
+SHORT |= {"finalFilling": "to", "stretch": "stretch-"}
+HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {}
+Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0."""
 
 
 def rows(sets, folder):
-    """Rows of [(parameters, number of clusters or their seeds)]: first one cluster of every set, then the others."""
+    """Rows of [(parameters, seeds)], with names and run folders such as ice-N1024-Cv1e-6-k0-s1."""
     found = []
     for parameters, seeds in sets:
         row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "stepFraction": STEP, **parameters}
-        for seed in range(1, seeds + 1) if isinstance(seeds, int) else seeds:
-            own = name(parameters, seed)
-            found.append({"description": own, **row, "seed": seed, "threads": 1, "out": f"{folder}/{own}"})
+        varied = [f"{short}{parameters[name]}" for name, short in SHORT.items() if name in parameters]
+        for seed in seeds:
+            name = "-".join([row["material"], *varied, f"s{seed}"])
+            found.append({"description": name, **row, "seed": seed, "threads": 1, "out": f"{folder}/{name}"})
     return sorted(found, key=lambda row: row["seed"] > 1)
-
-
-HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {}
-Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0."""
 
 
 def tables():

@@ -2,10 +2,9 @@
 
     python3 yade_scripts/studies/sintered.py grow SIZE [-j JOBS]    the compacted aggregates of a table that are missing
 
-Tables. full: Figs 6 to 17 with ten seeds, ordinary contacts of xi_crit = 2 and 30 Angstrom; the paper has five runs a
-point. desk: an evening on two cores: the points that decide the paper's statements. beyond: what the desk's runs leave
-open. decide: twenty seeds more of what ten leave undecided. Rows stand in the order of their worth: one seed of every
-point after another.
+Tables. full: Figs 6 to 17, ordinary contacts of xi_crit = 2 and 30 Angstrom. desk: an evening on two cores: the points
+that decide the paper's statements. beyond: what the desk's runs leave open. Each has ten seeds a point, where the paper
+has five runs. Rows stand in the order of their worth: one seed of every point after another.
 
 Compacted aggregates. Section 4 makes them by "collision simulations" at V_g, section 5.2 speaks of "successive
 collisions", without their start. Here two BCCA clusters of START grains, the same one in two random orientations,
@@ -27,17 +26,16 @@ from dataclasses import dataclass
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, TOP)
 from yade_scripts import packings
-from yade_scripts.materials import MATERIALS, pair_constants
+from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.from_run import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
 from yade_scripts.parameters.errors import tell
 from yade_scripts.run.parameters import CORES
 
-GRAINS = 1024
+GRAINS, SEEDS = 1024, range(1, 11)
 SLIDING = 2  # slidingStiffnessFactor: eqs 11 and 12 as printed
 GROWN = "runs/sintered-grown"  # compacted aggregates, each in two orientations: NAME.npz and NAME-b.npz
 START, STUCK, ATTEMPTS = 512, 0.9, 5
-RADIUS = 1e-7  # m
 CROSSINGS = 3.0  # a collision that compacts lasts until the two have moved so many diameters at V_g, at most DURATION
 # 20,000 periods of the stretching vibration of an unsintered contact: 2 pi [m*/(6/5 F_c/delta_0)]^(1/2) = 1.221 ns.
 DURATION = "24.4e-6"  # s
@@ -48,27 +46,6 @@ STEP = 0.1  # t0; bonds of beta = 0.2 are stable to 0.119 in BCCA aggregates
 STEP_COMPACTED = {0.2: 0.09}  # t0, by beta: packings of files count as close-packed, where they are stable to 0.0996
 STATES = 9  # Fig. 7 shows 0, 2,500, 5,000, 10,000 and 20,000 periods, Fig. 9 also 625 and 1,250
 ROOT = "10**0.5"  # m/s, the paper's 3.2
-
-
-@dataclass(frozen=True)
-class Grown:
-    """A compacted aggregate, which collided at V_g."""
-
-    velocity: float  # V_g [m/s]
-    seed: int
-    rolling: float = 2.0  # xi_crit [Angstrom]
-    planar: int = 1
-    limit: str = "cut"  # of collide.py
-
-    @property
-    def name(self):
-        """Name of its file, without ending."""
-        held = "" if self.limit == "cut" else f"-{self.limit}"
-        return f"vg{self.velocity:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}{held}-s{self.seed}"
-
-    def file(self, index):
-        """Path of the packing of target (0) or projectile (1)."""
-        return os.path.join(GROWN, self.name + ("", "-b")[index] + ".npz")
 
 
 @dataclass(frozen=True)
@@ -92,22 +69,25 @@ class Point:
         name += f"-T{1e12 * float(self.drag):g}ps" if float(self.drag) else ""
         return name + (f"-{self.limit}" if self.limit != "cut" else "") + f"-s{seed}"
 
-    def grown(self, seed):
-        """The compacted aggregate that collides."""
-        return Grown(self.growth, seed, self.rolling, self.planar, self.limit)
+    def grown(self, seed, index):
+        """Path of the compacted aggregate that is target (0) or projectile (1)."""
+        name = f"vg{self.growth:g}-x{self.rolling:g}-{'plane' if self.planar else 'space'}"
+        name += f"-{self.limit}" if self.limit != "cut" else ""
+        return f"{GROWN}/{name}-s{seed}{('', '-b')[index]}.npz"
 
     def row(self, seed, folder):
         """A table's row."""
-        bcca = {"packing": "bcca", "grains": GRAINS, "seed": seed, "file": "*", "projectileFile": "*"}
-        files = {"file": self.grown(seed).file(0), "projectileFile": self.grown(seed).file(1)}
-        compacted = {"packing": "file", "grains": "*", "seed": "*", **files}
-        slow = self.velocity == ROOT or float(self.velocity) <= FAST
-        row = {"description": self.name(seed), **(compacted if self.growth else bcca)}
+        aggregates = {"packing": "bcca", "grains": GRAINS, "seed": seed, "file": "*", "projectileFile": "*"}
+        step, slow = STEP, self.velocity == ROOT or float(self.velocity) <= FAST
+        if self.growth:
+            files = {"file": self.grown(seed, 0), "projectileFile": self.grown(seed, 1)}
+            aggregates = {"packing": "file", "grains": "*", "seed": "*", **files}
+            step = STEP_COMPACTED.get(self.neck, STEP)
+        row = {"description": self.name(seed), **aggregates}
         row |= {"planar": self.planar, "neck": f"{self.neck:g}", "velocity": self.velocity}
         row |= {"criticalRolling": f"{self.rolling:g}e-10", "viscoelasticTime": self.drag, "limit": self.limit}
         row |= {"slidingStiffnessFactor": SLIDING, "duration": DURATION if slow else DURATION_FAST, "endWhenApart": 1}
-        row |= {"states": STATES, "stepFraction": STEP_COMPACTED.get(self.neck, STEP) if self.growth else STEP}
-        return {**row, "threads": 1, "out": f"{folder}/{self.name(seed)}"}
+        return {**row, "states": STATES, "stepFraction": step, "threads": 1, "out": f"{folder}/{self.name(seed)}"}
 
 
 def points(necks, velocities, growth=(0,), **more):
@@ -164,38 +144,9 @@ BEYOND = unique(
     points((0.7,), (ROOT, "10", "20", "30"), planar=0, limit="held"),
     points((0, 0.2), ("10", "30"), planar=0, limit="held"),
 )
-# By what ten pairs gave, in the order of the chance that thirty decide.
-DECIDE = unique(
-    points((0.7,), ("10", "15"), (3,)),
-    points((0.5,), ("30",)),
-    points((0.2,), ("30",)),
-    points((0.2,), ("30",), planar=0),
-    points((0, 0.7), ("20",)),
-    points((0,), ("50",)),
-    points((0,), ("50",), limit="held"),
-)
-POINTS = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND, "decide": DECIDE}
-
-
-def seeds(size):
-    """Seeds of every point of a table."""
-    return range(11, 31) if size == "decide" else range(1, 11)
-
-
-def grown(size):
-    """Compacted aggregates that the rows of a table need, each once."""
-    return unique(point.grown(seed) for seed in seeds(size) for point in POINTS[size] if point.growth)
-
-
-def rows(size):
-    """Rows of a table: every point with the first seed, then with the next one. In desk space and drag come last."""
-    folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
-    groups = [DESK, [point for point in SPACE if point not in DESK]] if size == "desk" else [POINTS[size]]
-    return [point.row(seed, folder) for group in groups for seed in seeds(size) for point in group]
-
-
+POINTS = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {}
-{} seeds a point where the paper has five runs.
+10 seeds a point where the paper has five runs.
 Compacted aggregates (packing = file) are made by sintered.py grow, which make study-sintered runs first.
 The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
 after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2) and
@@ -208,73 +159,88 @@ WHICH = {
     "full": "All of the paper's.",
     "beyond": "What the desk's runs leave open: compacted aggregates in space, springs held at the limits "
     "(limit = held), both, xi_crit = 30 Angstrom.",
-    "decide": "Seeds 11 to 30 of what ten pairs leave undecided and thirty may decide.",
 }
+
+
+def rows(size):
+    """Rows of a table: every point with the first seed, then with the next one. In desk space and drag come last."""
+    folder = "runs/sintered" + ("" if size == "desk" else f"-{size}")
+    groups = [DESK, [point for point in SPACE if point not in DESK]] if size == "desk" else [POINTS[size]]
+    return [point.row(seed, folder) for group in groups for seed in SEEDS for point in group]
 
 
 def tables():
     """{size: (rows, head)}."""
-    return {size: (rows(size), HEAD.format(which, len(seeds(size)))) for size, which in WHICH.items()}
+    return {size: (rows(size), HEAD.format(which)) for size, which in WHICH.items()}
 
 
-def grow(grown):
+# ---- compacted aggregates ----
+
+
+def compacted(size):
+    """{file: (point, seed)} of the compacted aggregates that the rows of a table need."""
+    return {point.grown(seed, 0): (point, seed) for seed in SEEDS for point in POINTS[size] if point.growth}
+
+
+def grow(point, seed):
     """Make both packings of a compacted aggregate; one line about it. Raises PackingError when halves don't stick."""
-    overlap = pair_constants(MATERIALS["ice"])["equilibriumOverlap"]
-    half = packings.bcca(START, RADIUS, overlap, grown.seed, 0, bool(grown.planar))
+    ice = MATERIALS["ice"]
+    half = packings.bcca(START, ice.grainRadius, equilibrium_overlap(ice), seed, 0, bool(point.planar))
     with tempfile.TemporaryDirectory() as folder:
         for attempt in range(ATTEMPTS):
             run = os.path.join(folder, str(attempt))
             files = [f"{run}-{index}.npz" for index in (0, 1)]
             for index, file in enumerate(files):
-                packings.save(file, turned(half, grown.seed, 1000 + 2 * attempt + index))
-            _collide(half, grown, files, run)
+                packings.save(file, turned(half, seed, 1000 + 2 * attempt + index))
+            collide(half, point, files, run)
             found = largest_piece_of_run(run)
             if found.grains >= STUCK * 2 * START:
                 break
         else:
             raise PackingError(
-                f"{grown.name}: two aggregates of {START} grains did not stick at {grown.velocity:g} m/s in {ATTEMPTS} "
-                "orientations; must be a smaller growth velocity"
+                f"{point.grown(seed, 0)}: two aggregates of {START} grains did not stick at {point.growth:g} m/s in "
+                f"{ATTEMPTS} orientations; must be a smaller growth velocity"
             )
-    about = {**found.parameters, "growthVelocity": grown.velocity, "criticalRolling": grown.rolling * 1e-10}
-    about |= {"limit": grown.limit, "start": START, "generations": 1}
-    aggregate = Packing(found.position, found.radius, grown.seed, about)
+    about = {**found.parameters, "growthVelocity": point.growth, "criticalRolling": point.rolling * 1e-10}
+    about |= {"limit": point.limit, "start": START, "generations": 1}
+    aggregate = Packing(found.position, found.radius, seed, about)
     for index in (1, 0):  # the target last: when it is there, both are
-        packings.save(grown.file(index), turned(aggregate, grown.seed, 100 + index))
+        packings.save(point.grown(seed, index), turned(aggregate, seed, 100 + index))
     contacts = 2 * len(packings.contacts(aggregate)) / aggregate.grains
-    return f"{grown.name}: {aggregate.grains} grains, {contacts:.2f} contacts a grain"
+    return f"{point.grown(seed, 0)}: {aggregate.grains} grains, {contacts:.2f} contacts a grain"
 
 
-def _collide(half, grown, files, run):
-    duration = min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / grown.velocity)
-    arguments = dict(packing="file", file=files[0], projectileFile=files[1], velocity=grown.velocity, out=run)
-    arguments |= dict(criticalRolling=grown.rolling * 1e-10, slidingStiffnessFactor=SLIDING, limit=grown.limit)
-    arguments |= dict(planar=grown.planar, duration=duration, states=2, threads=1)
+def collide(half, point, files, run):
+    """Run the collision that compacts, at V_g."""
+    duration = min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / point.growth)
+    arguments = dict(packing="file", file=files[0], projectileFile=files[1], velocity=point.growth, out=run)
+    arguments |= dict(criticalRolling=point.rolling * 1e-10, slidingStiffnessFactor=SLIDING, limit=point.limit)
+    arguments |= dict(planar=point.planar, duration=duration, states=2, threads=1)
     command = ["yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "collide.py")]
     command += [f"{name}={value}" for name, value in arguments.items()]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise PackingError(f"{grown.name}: collide.py failed: {done.stderr.strip()}")
+        raise PackingError(f"collide.py failed: {done.stderr.strip()}")
 
 
-def main(arguments):
+def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=["grow"])
     parser.add_argument("size", choices=sorted(POINTS))
     parser.add_argument("-j", "--jobs", type=int, default=CORES)
-    options = parser.parse_args(arguments)
-    missing = [each for each in grown(options.size) if not os.path.exists(each.file(0))]
+    options = parser.parse_args()
     os.makedirs(GROWN, exist_ok=True)
     failed = 0
     with ThreadPoolExecutor(max(1, options.jobs)) as pool:
-        for found in [pool.submit(grow, each) for each in missing]:
+        missing = [which for file, which in compacted(options.size).items() if not os.path.exists(file)]
+        for found in [pool.submit(grow, *which) for which in missing]:
             try:
                 print(found.result(), flush=True)
             except (PackingError, OSError) as error:
                 failed = 1
                 tell(error, "sintered.py")
-    return failed
+    sys.exit(failed)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main()
