@@ -7,45 +7,29 @@ import signal
 import numpy as np
 import pytest
 from running import *
-from shrinking_cell import SHRINK
 
-# A second or so of stepping, with a checkpoint after each few steps.
-RUN = ("radius=10", "velocity=10", "duration=400e-9", "threads=1")
-OFTEN = "checkpointInterval=0.05"
+OFTEN = "checkpointInterval=0.05"  # after each few steps
+# A second or so of stepping: a collision whose steps change, a compression whose end follows from the history.
 KINDS = {
-    "necks": (COLLIDE, "packing=bcca grains=512 planar=1 neck=0.3 velocity=60 duration=300e-9 threads=1", 0.0),
-    "shorter steps": (
-        COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06", 0.0
-    ),
-    "a step that the run chooses": (COLLIDE, "radius=10 velocity=10 duration=300e-9 threads=1 stepFraction=auto", 0.0),
-    # one that is compressed or stretched, with an end that follows from the history
-    "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x", 0.5),
-    "plate": (COLLIDE, "target=wall radius=8 velocity=10 duration=300e-9 threads=1", 0.0),
-    "piston": (COMPRESS, "boundary=walls grains=300 strainRate=1e-4 threads=1 finalFilling=0.3", 0.5),
-    "a user's own": (SHRINK, "duration=200e-9 rate=3e-5 threads=1", 0.0),
-}  # fmt: skip
+    "collision": (COLLIDE, "radius=8 velocity=30 duration=400e-9 threads=1 stepFraction=0.2 impactStepFraction=0.06"),
+    "compression": (COMPRESS, "grains=64 strainRate=2e-5 threads=1 finalFilling=0.2 stretch=x"),
+}
 
 
 @pytest.mark.parametrize("name", KINDS)
-def test_runs_of_every_kind_resume_to_the_same_bits(tmp_path, name):
-    """SIGTERM records one state more, where it stopped; that one is removed when the run resumes, and what a writer
-    that was killed has left."""
-    script, arguments, after = KINDS[name]
-    arguments = arguments.split()
+def test_a_run_that_was_killed_resumes_to_the_same_bits(tmp_path, name):
+    """What its writer has left half done is removed."""
+    script, arguments = KINDS[name][0], KINDS[name][1].split()
     completed(tmp_path / "straight", *arguments, script=script)
-    number = signal.SIGTERM if name == "shorter steps" else signal.SIGKILL
-    stop_midway(tmp_path, [*arguments, OFTEN], number, script, after)
+    stop_midway(tmp_path, [*arguments, OFTEN], script=script, after=0.5 if script == COMPRESS else 0.0)
     run, straight = tmp_path / "run", tmp_path / "straight" / "run"
     before, saved = read_json(run, "run.json"), read_arrays(run, "checkpoint", "recorder.npz")["rows"]
-    assert before["outcome"] == ("interrupted" if number == signal.SIGTERM else "running")
-    assert 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
-    left = [run / ".history.npz.0123abcd.unfinished", run / "states" / ".000003.npz.0123abcd.unfinished"]
-    for path in left:
-        path.write_bytes(b"half")
+    assert before["outcome"] == "running" and 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
+    half = run / "states" / ".000003.npz.0123abcd.unfinished"
+    half.write_bytes(b"half")
     about, _ = completed(tmp_path, *arguments, "resume=1", script=script)
     assert about["wallTime"] > before["wallTime"] and about["outcome"] == "completed"
-    assert same_bits(run, straight) and not any(path.exists() for path in left)
-    assert {"ended", "history.npz", "run.json", "states"} <= set(os.listdir(run))
+    assert same_bits(run, straight) and not half.exists()
 
 
 def test_yades_own_loop_resumes_to_rounding(tmp_path):
@@ -59,35 +43,23 @@ def test_yades_own_loop_resumes_to_rounding(tmp_path):
         assert np.allclose(one[name], other[name], rtol=0, atol=1e-6 * np.abs(one[name]).max()), name
 
 
-def test_a_run_that_ended_decided_does_not_go_on(tmp_path):
-    completed(tmp_path, "packing=bcca", "grains=16", "velocity=10", "seed=3")
-    line = refusal(collide(tmp_path, "continue=run", "duration=1e-6"))
-    assert line.endswith("continue = run: the run has ended, decided; must be one that was stopped, or is undecided")
-
-
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
-    """Its line has the command; what the command says of other parameters, or of no more time, is refused. A row of a
-    table is its run if that is as long as it wants, and goes on with it otherwise."""
+    """Its line has the command. A row of a table is its run if that is as long as it wants, and goes on with it
+    otherwise."""
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
     reason, _, command = done.stdout.partition("; to continue: ")
-    assert "outcome undecided: " in reason and "ended" in os.listdir(tmp_path / "run")
+    assert "outcome undecided: " in reason and (tmp_path / "run" / "ended").exists()
     command = shlex.split(command.splitlines()[0])
     assert command[-1] == "duration=6e-07"
-    for wrong, words in (
-        (["duration=2e-7"], "the run in run has come to 3.00162e-07 s; must be longer"),
-        ([command[-1], "velocity=3"], "velocity: given with continue = run, whose own it is; must be left out"),
-        ([command[-1], "continue=nowhere"], "continue: given twice; must be given once"),
-    ):
-        assert words in refusal(call(tmp_path, *command[:-1], *wrong))
+    assert "must be longer" in refusal(call(tmp_path, *command[:-1], "duration=2e-7"))
+    assert "velocity: given with continue = run" in refusal(call(tmp_path, *command, "velocity=3"))
     assert "outcome undecided" in call(tmp_path, *command[:-1], "duration=3.1e-7").stdout
     for wanted, words in (
-        ("duration=3e-7 seed=2", "holds an ended run with seed = 1, not 2; must be the same"),
         ("duration=3e-7", "rows: 1 rows, 1 done"),
         ("duration=6e-7", "1 to run, 1 of them from checkpoints"),
-        ("duration=3.1e-7", "rows: 1 rows, 1 done"),
-        ("duration=7e-7", "holds an ended run with duration = 6e-07, not 7e-07; must be the same"),
+        ("duration=6e-7 seed=2", "holds an ended run with seed = 1, not 2; must be the same"),
     ):
         cells = dict(cell.split("=") for cell in ("description=row", "out=run", *fluffy, *wanted.split()))
         (tmp_path / "rows.table").write_text(" ".join(cells) + "\n" + " ".join(cells.values()) + "\n")
@@ -99,7 +71,8 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
 
 @pytest.mark.parametrize("number, status", [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
 def test_an_interrupted_run_leaves_what_it_had_and_prints_what_continues(tmp_path, number, status):
-    process = stop_midway(tmp_path, [*RUN, OFTEN], number)
+    arguments = ("radius=10", "velocity=10", "duration=400e-9", "threads=1", OFTEN)
+    process = stop_midway(tmp_path, arguments, number)
     assert process.returncode == status and "run folder: run (interrupted, " in process.output
     assert sorted(os.listdir(tmp_path / "run")) == ["checkpoint", "history.npz", "run.json", "states"]
     history = read_arrays(tmp_path, "run", "history.npz")

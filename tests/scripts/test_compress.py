@@ -89,21 +89,13 @@ def test_it_ends_at_a_pressure(tmp_path):
     assert done.returncode == 0 and "the cell is not stretched" in message and about["outcome"] == "completed"
 
 
-def test_what_swings_from_the_start_is_no_pressure(tmp_path):
-    """The virial of the first 1000 t0 is 20 Pa, of an aggregate that touches nothing."""
-    _, history = completed(tmp_path, *SMALL, "finalPressure=1")
-    assert history["boundaryWork"][-1] < 0 and history["filling"][-1] < 0.02
-
-
-@pytest.mark.parametrize("axes, grows", [("x", (True, False, False)), ("xyz", (True, True, True))])
-def test_stretching(tmp_path, axes, grows):
+def test_stretching_along_an_axis(tmp_path):
     """The same cell afterwards: to 0.3 of the largest filling, under tension, with a ledger that closes."""
-    _, history = completed(tmp_path, *SMALL, "finalFilling=0.3", f"stretch={axes}")
+    _, history = completed(tmp_path, *SMALL, "finalFilling=0.3", "stretch=x")
     turn = int(np.argmax(history["filling"]))
     assert 0.3 <= history["filling"][turn] < 0.31 and 0.085 < history["filling"][-1] <= 0.3 * history["filling"][turn]
     edges = [history[f"edge_{axis}"][-1] / history[f"edge_{axis}"][turn] for axis in "xyz"]
-    assert [edge > 1.05 for edge in edges] == list(grows)
-    assert all(abs(edge - 1) < 1e-9 for edge, grown in zip(edges, grows) if not grown)
+    assert edges[0] > 1.05 and edges[1:] == pytest.approx([1, 1], abs=1e-9)
     assert history["boundaryWork"][-1] < history["boundaryWork"][turn]  # grains pulled the boundaries back
     assert worst_closure(history) < 1e-3
 
@@ -133,12 +125,8 @@ def test_a_piston_between_plates(tmp_path):
     "arguments, message",
     [
         ("finalFilling=0.7", "finalFilling = 0.7: beyond random close packing; must be at most 0.650"),
-        ("strainRate=1e-3 finalPressure=1e3", "finalPressure = 1000: a mean over 1000 t0"),
-        ("finalFilling=1e-5", "finalFilling = 1e-05: must be above the 0.008166 of the start"),
         ("initialFilling=0.2", "initialFilling = 0.2: "),  # the cluster would touch its images
-        ("grains=20", "grains = 20: the cell would be too small at a filling of 0.5"),
         ("stepFraction=0.4", "stepFraction = 0.4: unstable at this final filling and damping"),
-        ("boundary=walls stretch=x", "stretch = x: given with boundary = walls"),
     ],
 )
 def test_wrong_parameters_give_one_line(tmp_path, arguments, message):

@@ -8,9 +8,8 @@ import pytest
 from refused import refused
 
 from yade_scripts import stability
-from yade_scripts.experiments import collision, collision_step
+from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision import CollisionParameters
-from yade_scripts.experiments.compression import CompressionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings import grain_number
 from yade_scripts.parameters import ParameterError
@@ -34,12 +33,6 @@ def test_defaults_are_the_scene_of_the_demo_and_stay():
     given = parse({})
     assert (given.filling, given.radius, given.grains) == (0.4, 20, 3200)
     assert given.velocity == 10**0.5 and given.out == "runs/collide-ice-f0.4-R20-v3.16227766-s1"
-    found = complete({})
-    missing = {name for name, value in found.as_dict().items() if value is None}
-    files, sizes = {"projectileGrains", "projectileFile", "file"}, {"sizeRatio", "sizeFraction", "sizeSpread"}
-    assert found.threads == 1 and missing == files | sizes | {"duration", "impactStepFraction", "tolerance"}
-    with pytest.raises(AttributeError):
-        parse({}).velocity = 3.0
     by_grains = parse({"grains": "1000", "filling": "0.3"})
     assert by_grains.grains == 1000
     assert by_grains.radius == pytest.approx((1000 / 0.3) ** (1 / 3), rel=1e-14)
@@ -49,12 +42,10 @@ def test_defaults_are_the_scene_of_the_demo_and_stay():
 @pytest.mark.parametrize(
     "name, text, value",
     [
-        ("velocity", "10**0.5", 10**0.5),
         ("velocity", 3, 3.0),
         ("seed", "1e3", 1000),
         ("seed", str(2**60 + 1), 2**60 + 1),
         ("material", "'silicate'", "silicate"),
-        ("out", '"a b"', "a b"),
     ],
 )
 def test_values_have_their_type(name, text, value):
@@ -65,35 +56,20 @@ def test_values_have_their_type(name, text, value):
 def test_numbers_may_be_written_as_arithmetic():
     for text, value in {
         "1_000": 1000,
-        "2**60 + 1": 2**60 + 1,
         "-2**2": -4,
         "10**(0.1*5)": 10**0.5,
-        "(1 + 2)*3/4 - 5": -2.75,
-        "2*pi*sqrt(2)/e": 2 * math.pi * math.sqrt(2) / math.e,
-        "exp(1) + log(2) + log10(3) + sin(4)": math.e + math.log(2) + math.log10(3) + math.sin(4),
+        "2*pi*sqrt(2)/exp(1) - 5": 2 * math.pi * math.sqrt(2) / math.e - 5,
     }.items():
         assert evaluate(text) == value and type(evaluate(text)) is type(value)
 
 
 def test_nothing_but_arithmetic_is_evaluated_and_nothing_that_takes_long():
     start = time.process_time()
-    others = "().__class__; pi.__class__; lambda: 1; 'a' * 9; x; sqrt(4, 2); 1 < 2; True; 1j; x = 1; 1 +; 1/0; nan"
-    too_large = "exp(1000); 1e999; 9**9**9**9; 0.5**-5000"
-    for text in [*others.split("; "), *too_large.split("; "), "", '__import__("os")']:
+    texts = "pi.__class__; lambda: 1; 'a' * 9; x; sqrt(4, 2); True; 1j; 1 +; 1/0; nan; exp(1000); 9**9**9**9"
+    for text in [*texts.split("; "), "", '__import__("os")']:
         with pytest.raises(NotANumber):
             evaluate(text)
     assert time.process_time() - start < 1
-
-
-def test_no_packing_is_made_while_parsing():
-    """200 rows of BCCA aggregates, which take minutes to make."""
-    collision.estimate(parse({}))  # what is imported at first
-    start = time.process_time()
-    rows = [parse({"packing": "bcca", "grains": 50_000, "seed": seed}) for seed in range(200)]
-    estimates = [collision.estimate(row) for row in rows]
-    assert time.process_time() - start < 1
-    assert {row.radius for row in rows} == {row.filling for row in rows} == {None}
-    assert estimates[0].grains == estimates[0].contacts == 100_000 and estimates[0].steps > 1e5
 
 
 def test_properties_of_a_material_are_columns_of_their_own():
@@ -103,32 +79,19 @@ def test_properties_of_a_material_are_columns_of_their_own():
     for name in ("young", "poisson", "density", "criticalRolling"):
         assert getattr(found, name) == getattr(silicate, name)
     assert found.out.endswith("-grainRadius1e-07-surfaceEnergy0.05")
-    as_ice = {name: getattr(MATERIALS["ice"], name) for name in vars(MATERIALS["ice"])}
-    assert pair_constants(parse({"material": "silicate", **as_ice})) == pair_constants(parse({}))
-    small, large = (pair_constants(parse({"grainRadius": radius}))["pullOffForce"] for radius in (1e-7, 2e-7))
-    assert large == pytest.approx(2 * small, rel=1e-14)
 
 
 # Arguments of the command line: the beginning of the refusal.
 WRONG = {
     "velocty=3": "velocty: unknown parameter (did you mean velocity?)",
     "velocity=fast": "velocity = fast: not a finite number; must be > 0 [m/s]",
-    "velocity=-1": "velocity = -1: must be > 0 [m/s]",
     "velocity=3000": "velocity = 3000 m/s: must be 1e-06 to 1000 m/s",
-    "radius=1": "radius = 1: too small or large at filling 0.4; must be about 1.71",
     "grains=10.5": "grains = 10.5: not a whole number",
     "grains=100 radius=20": "radius and grains: both given",
-    "poisson=0 viscoelasticTime=1e-12": "poisson = 0: with viscous drag must be > 0",
     "material=iron": "material = iron: must be ice or silicate",
-    "stepFraction=0.5": "stepFraction = 0.5: must be > 0 and <= 0.4",
-    "tolerance=1e-5": "tolerance = 1e-05: given with stepFraction = 0.1",
-    "impactStepFraction=0.1 stepFraction=auto": "impactStepFraction = 0.1: given with stepFraction = auto",
-    "out=": "out = : must be a folder",
     "packing=bcca grains=1e6": "grains = 1000000: too many for packing = bcca",
     "target=wall neck=0.5": "neck = 0.5: given with target = wall",
     "packing=file": "file: not given with packing = file",
-    "packing=bpca sizes=two": "sizeRatio: not given with sizes = two",
-    "packing=bcca sizes=two sizeRatio=2 neck=0.5": "sizes = two: given with neck = 0.5",
     "velocity=3 velocity=4": "velocity: given twice",
 }
 
@@ -150,29 +113,6 @@ def test_drag_and_dense_packings_lower_the_stable_step():
         complete({"stepFraction": "0.3"}, with_drag(6e-12))
 
 
-def test_runs_without_an_end_are_refused():
-    stability.require_countable(0.999, 1e-9)
-    for time_step in (0.999e-9, 0.0):
-        with refused(ParameterError, "duration = 1: ", "must be at most 1e+09 steps"):
-            stability.require_countable(1.0, time_step)
-
-
-def test_the_default_duration_is_that_of_the_paper():
-    """Counted from the first touch: test_collide.py."""
-    found = collision.default_duration(complete({"radius": 30}), 30, ICE_PAIR["timeUnit"], 5e-8)
-    assert found - 5e-8 == pytest.approx(12.5e-9 * 30, rel=1e-3)
-
-
-def test_threads_of_the_functors_are_those_of_yade_and_of_the_engine_its_own():
-    functors = {"engine": "functors"}
-    assert complete(functors, threads=2).threads == 2
-    with pytest.raises(ParameterError, match="threads = 3: YADE was started with 1; must be "):
-        complete({"threads": "3", **functors})
-    assert complete({"threads": "2"}).threads == 2
-    with pytest.raises(ParameterError, match="threads = 99999: more than this machine has cores; must be 1 to "):
-        complete({"threads": "99999"})
-
-
 def test_names_of_run_folders():
     assert parse({"impact": "0.5"}).out.endswith("-s1-impact0.5")
     assert parse({"threads": 2, "resume": 1}).out == parse({}).out
@@ -182,8 +122,7 @@ def test_names_of_run_folders():
     assert parse({"out": "/tmp/x"}, "ignored").out == "/tmp/x"
 
 
-@pytest.mark.parametrize("parameters", [CollisionParameters, CompressionParameters])
-def test_help_names_every_parameter_once_with_its_unit(parameters):
-    text = parameters.help_text()
-    assert sorted(re.findall(r"^  (\w+)", text, re.M)) == sorted(parameters.columns())
-    assert parameters is not CollisionParameters or "\n  velocity = 3.16228 [m/s]\n" in text
+def test_help_names_every_parameter_once_with_its_unit():
+    text = CollisionParameters.help_text()
+    assert sorted(re.findall(r"^  (\w+)", text, re.M)) == sorted(CollisionParameters.columns())
+    assert "\n  velocity = 3.16228 [m/s]\n" in text

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from refused import refused
 
-from analysis.runs import lock
 from yade_scripts.parameters.errors import InputError
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import MOST_SAMPLES, Schedule
@@ -53,22 +52,6 @@ def test_an_ended_run_is_replaced_only_with_overwrite_and_another_without(tmp_pa
         assert [file for file in folder.rglob("*") if file.is_file()] == []
 
 
-def test_a_run_that_ends_while_its_folder_is_opened_is_not_erased(tmp_path, monkeypatch):
-    """The other run comes to its end in the moment before this one takes its lock."""
-    other, take = RunFolder(str(tmp_path / "run")), lock.take
-    other.write_run(RUN)
-
-    def ends_then_take(path):
-        other.write_ended()
-        other.close()
-        return take(path)
-
-    monkeypatch.setattr(lock, "take", ends_then_take)
-    with pytest.raises(InputError, match="holds a run that has ended"):
-        RunFolder(other.path)
-    assert sorted(os.listdir(other.path)) == ["ended", "run.json"]
-
-
 def contents(folder):
     """{name: text, or where a link leads} of everything in a folder."""
     return {
@@ -78,54 +61,31 @@ def contents(folder):
     }
 
 
-OTHERS = {
-    "no run": {"thesis.tex": "x"},
-    "no JSON": {"run.json": "no json", "history.npz": "mine"},
-    "another program's": {"run.json": '{"format": 3, "outcome": "fine"}', "history.npz": "mine"},
-}
-
-
-@pytest.mark.parametrize("what", OTHERS)
-def test_a_folder_of_other_files_is_left_as_it_is(tmp_path, what):
-    for name, text in OTHERS[what].items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+def test_a_folder_or_file_of_others_is_left_as_it_is(tmp_path):
+    (tmp_path / "others").mkdir()
+    (tmp_path / "others" / "run.json").write_text('{"format": 3, "outcome": "fine"}')
+    (tmp_path / "file").write_text("mine")
     before = contents(tmp_path)
-    for options in ({}, {"overwrite": True}, {"resume": True, "overwrite": True}):
-        with refused(InputError, "exists and is no run folder"):
-            RunFolder(str(tmp_path), **options)
+    for name, words in {"others": "exists and is no run folder", "file": "is a file; must be a folder"}.items():
+        with refused(InputError, words):
+            RunFolder(str(tmp_path / name), resume=True, overwrite=True)
     assert contents(tmp_path) == before
 
 
-def test_what_others_put_into_a_run_folder_stays(tmp_path):
+def test_what_others_put_into_a_run_folder_stays_and_links_out_of_it_are_not_followed(tmp_path):
     path = ended_run(tmp_path / "run")
-    others = {"notes.txt", "states/mine.npz", "checkpoint/mine"}
-    (path / "checkpoint").mkdir()
-    for name in (*others, "checkpoint/scene-3.yade"):
+    others = {"notes.txt", "states/mine.npz"}
+    for name in others:
         (path / name).write_text("mine")
     RunFolder(str(path), overwrite=True).close()
     assert set(contents(path)) == others
-
-
-@pytest.mark.parametrize("name", ["states", "checkpoint"])
-def test_links_out_of_an_ended_run_are_not_followed(tmp_path, name):
-    """A disk was full, and someone has moved a part of the run elsewhere."""
-    path, elsewhere = ended_run(tmp_path / "run"), tmp_path / "elsewhere"
-    (path / "checkpoint").mkdir()
-    (path / name).rename(elsewhere)
-    (path / name).symlink_to(elsewhere)
+    (path / "states").rename(tmp_path / "elsewhere")
+    (path / "states").symlink_to(tmp_path / "elsewhere")
+    (path / "run.json").write_text('{"format": 4, "kind": "collision", "parameters": {}, "derived": {}}')
     before = contents(tmp_path)
-    with pytest.raises(InputError, match=f"{name} is a link"):
+    with pytest.raises(InputError, match="states is a link"):
         RunFolder(str(path), overwrite=True)
     assert contents(tmp_path) == before
-
-
-def test_an_unwritable_folder_is_one_line(tmp_path):
-    (tmp_path / "run").write_text("mine")
-    places = {tmp_path / "run": "is a file; must be a folder", "x" * 256: "File name too long", "/proc/run": ""}
-    for path, words in places.items():
-        with refused(InputError, f"out = {path}: ", words, "must be a folder"):
-            RunFolder(str(path), overwrite=True)
 
 
 def test_a_schedule_has_both_ends_and_fits_into_memory():

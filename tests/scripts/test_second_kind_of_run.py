@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from running import call, messages, read_arrays, read_json, refusal, study
+from running import call, messages, read_arrays, read_json, study
 from shrinking_cell import SHRINK
 
 from analysis import open_run
@@ -41,12 +41,6 @@ def test_its_folder_has_its_series_its_states_the_cell_and_its_ledger_the_work_o
     assert np.ptp(stored) > 5 * start and history["boundaryWork"][-1] < -5 * start
     total = stored + history["boundaryWork"]
     assert np.abs(total - total[0]).max() < 1e-3 * np.ptp(stored)
-
-
-def test_its_parameters_are_checked(tmp_path):
-    assert refusal(shrink(tmp_path, "rate=-1")).startswith("shrinking_cell.py: rate = -1: must be > 0 [1/t0]")
-    assert "stepFraction = auto: not measured for this kind of run" in refusal(shrink(tmp_path, "stepFraction=auto"))
-    assert os.listdir(tmp_path) == []
 
 
 def test_a_study_of_two_kinds(run, tmp_path):

@@ -5,10 +5,8 @@ import os
 import signal
 from math import ceil
 
-import pytest
 from running import PYTHON, TOP, read_json, start, study, wait_for
 
-from analysis.runs.status import WAITING, State
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows, slurm
 
@@ -47,9 +45,6 @@ def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, prog
     program("sbatch", 'echo "$@" >> sbatch; echo $((11 + $(wc -l < sbatch)))')
     program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
     write_table(tmp_path)
-    log = tmp_path / "runs" / "logs" / "three" / "a.log"  # of an earlier failure
-    log.parent.mkdir(parents=True)
-    log.write_text("collide.py: no\nJOB SUMMARY\nstatus  : 256 (FAILED)\n")
     done = study(tmp_path, "three.table", "--slurm", "--", "--time=5", "--partition=long")
     assert (done.returncode, done.stderr) == (1, REFUSED)
     assert done.stdout.splitlines() == [
@@ -57,7 +52,6 @@ def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, prog
         "Slurm job 13: 1 rows in 1 tasks, 2 threads each",
         "three: 4 rows, 0 done, 0 running, 1 failed, 0 in the queue before, 3 submitted",
     ]
-    assert not log.exists()
     script = "runs/logs/three/slurm-{}/job.sh"
     options = "--parsable --time=5 --partition=long"
     assert (tmp_path / "sbatch").read_text().splitlines() == [f"{options} {script.format(n)}" for n in (1, 2)]
@@ -68,16 +62,6 @@ def test_what_waits_in_the_queue_is_shown_and_not_submitted_again(tmp_path, prog
     notes = {"a": "12_1", "b": "13_1", "c": "12_1"}
     assert [line.split()[:2] for line in status[:3]] == [["waiting", name] for name in notes]
     assert all(line.endswith(f"Slurm job {task} pending") for line, task in zip(status, notes.values()))
-    program("squeue", "echo Unable to contact slurm controller >&2; exit 1")
-    silent = study(tmp_path, "three.table", "--slurm")
-    assert (
-        silent.returncode == 2
-        and "squeue: Unable to contact slurm controller; must tell whether job 12 is" in silent.stderr
-    )
-    program("squeue", 'for task in 1 2; do echo "$4_$task PENDING"; done')
-    (tmp_path / "other").mkdir()
-    write_table(tmp_path / "other", HEADER + "a 5 10 1 runs/of_another_table\n")
-    assert "0 in the queue before, 1 submitted" in study(tmp_path, "other/three.table", "--slurm").stdout
     write_table(tmp_path, TABLE + "more 5 13 1 runs/more\n")
     again = study(tmp_path, "three.table", "--slurm").stdout.splitlines()
     assert again[-1].endswith("1 failed, 3 in the queue before, 1 submitted")
@@ -97,21 +81,12 @@ def test_arrays_are_no_larger_than_slurm_takes_them_and_short_rows_share_tasks()
     ]  # fmt: skip
 
 
-ONE = HEADER + "a 5 10 1 a\n"
-
-
-@pytest.fixture
-def task(tmp_path, program, monkeypatch):
-    """The folder of a task of Slurm, 12_3, in which scontrol notes what it is called with."""
+def test_a_task_at_its_limit_writes_a_checkpoint_and_is_put_into_the_queue_again(tmp_path, program, monkeypatch):
+    task = "logs/slurm-1/rows.table"
     (tmp_path / "logs" / "slurm-1").mkdir(parents=True)
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SLURM_ARRAY_JOB_ID", "12")
     monkeypatch.setenv("SLURM_ARRAY_TASK_ID", "3")
     program("scontrol", 'echo "$@" > scontrol')
-    return "logs/slurm-1/rows.table"
-
-
-def test_a_task_at_its_limit_writes_a_checkpoint_and_is_put_into_the_queue_again(tmp_path, task):
     header = "description radius velocity duration checkpointInterval threads out\n"
     write_table(tmp_path, header + "ends 4 30 1e-9 1 1 ends\nlong 10 10 5e-6 0.1 2 long\n", task)
     process = start(tmp_path, PYTHON, slurm.__file__, task, "1", "1")
@@ -123,33 +98,3 @@ def test_a_task_at_its_limit_writes_a_checkpoint_and_is_put_into_the_queue_again
     assert ends == "ends: done" and long.startswith("long: waiting checkpoint at ")
     assert (tmp_path / "scontrol").read_text() == "requeue 12_3\n"
     assert read_json(tmp_path, "long", "run.json")["outcome"] == "interrupted"
-
-
-class Stopped:
-    """In the place of a Batch: the time limit is near."""
-
-    def __init__(self, *_, **__):
-        os.kill(os.getpid(), signal.SIGUSR1)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def running(self):
-        return ["a"]
-
-
-@pytest.mark.parametrize("progress, requeued", [(0.5, True), (0.1, False)], ids=["further", "no further"])
-def test_a_task_that_came_no_further_is_not_put_into_the_queue_again(tmp_path, monkeypatch, task, progress, requeued):
-    """It would begin anew for ever."""
-    write_table(tmp_path, ONE, task)
-    states = iter([State(WAITING, 0.1), State(WAITING, progress, note="checkpoint")])
-    monkeypatch.setattr(rows, "state", lambda *_: next(states))
-    monkeypatch.setattr(slurm, "Batch", Stopped)
-    handlers = {number: signal.getsignal(number) for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)}
-    assert slurm.main([task, "1", "1"]) == 128 + signal.SIGUSR1
-    for number, handler in handlers.items():
-        signal.signal(number, handler)
-    assert (tmp_path / "scontrol").exists() == requeued

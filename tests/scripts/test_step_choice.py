@@ -42,16 +42,9 @@ def expected_error(parameters, constants):
 
 SCENES = [
     "",
-    "velocity=30",
-    "velocity=0.5",
-    "radius=8",
-    "radius=60 filling=0.3",
-    "material=silicate",
     "packing=bpca grains=5000 velocity=50 viscoelasticTime=1e-12",
-    "packing=bcca grains=500 planar=1 limit=cut",
     "packing=bcca grains=1000 projectileGrains=100 neck=0.3 velocity=4",
     "strainRate=3e-07 finalFilling=0.2",
-    "strainRate=3e-07 linearDamping=0",
 ]
 
 
@@ -80,13 +73,9 @@ def test_the_limits_of_stability_and_of_the_tolerance():
 @pytest.mark.parametrize(
     "case",
     [
-        {"material": "ice"},
-        {"viscoelasticTime": 4e-12, "poisson": 0.3, "grainRadius": 3e-7},
+        {"viscoelasticTime": 4e-12, "poisson": 0.3, "grainRadius": 3e-7, "density": 800, "criticalRolling": 2e-9},
         {"material": "silicate", "viscoelasticTime": 1e-11, "young": 30e9, "surfaceEnergy": 0.1},
-        {"density": 800, "criticalRolling": 2e-9},
-        {"neck": 0.3},
         {"neck": 0.5, "slidingStiffnessFactor": 2},
-        {"neck": 0.65, "material": "silicate"},
     ],
     ids=str,
 )
@@ -102,54 +91,28 @@ def test_constants_for_estimates_are_the_plugins(case):
     assert {key: plugins["bond"][key] for key in bond} == pytest.approx(bond, rel=1e-12)
 
 
-# Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds; of every other kind, likewise; planes: an
-# aggregate that meets a plate (impacts that stick, bounce and break), a layer under a piston.
-COLLISIONS = """
+# Scenes that are in no fit: other velocities, sizes, fillings, drags, seeds.
+NOT_FITTED = """
 seed=1000 radius=7 velocity=0.8 filling=0.45 tolerance=0.001
 seed=1002 radius=8 velocity=2.3 filling=0.5 viscoelasticTime=2e-12 tolerance=0.0001
-seed=1004 radius=8 velocity=4.2 filling=0.4 tolerance=3e-05
 seed=1006 radius=6 velocity=6.5 filling=0.38 tolerance=0.0003
-seed=1008 radius=13 velocity=8.5 filling=0.42 tolerance=0.0001
-seed=1010 radius=9 velocity=13 filling=0.33 viscoelasticTime=5e-12 tolerance=3e-05
-seed=1012 radius=10 velocity=21 filling=0.4 tolerance=0.0001
 seed=1014 radius=7 velocity=45 filling=0.45 viscoelasticTime=3e-12 tolerance=0.001
 seed=1016 radius=8 velocity=0.7 filling=0.5 material=silicate tolerance=0.001
-"""
-OTHER_KINDS = """
 seed=2000 packing=bpca grains=250 velocity=47 viscoelasticTime=2e-12 tolerance=0.0003
 seed=2000 packing=bcca grains=120 projectileGrains=50 velocity=11 tolerance=0.001
-seed=2000 planar=1 radius=11 filling=0.8 velocity=21 viscoelasticTime=4e-12 tolerance=0.001
 seed=2000 radius=6 limit=cut criticalRolling=3e-10 velocity=9 tolerance=0.001
 seed=2000 radius=6 neck=0.6 velocity=2.2 tolerance=0.0003
-seed=2000 packing=bcca planar=1 grains=60 neck=0.3 limit=cut velocity=12 tolerance=0.001
 seed=2000 grains=90 strainRate=0.00021 linearDamping=0 tolerance=0.0002
-"""
-PLANES = """
 target=wall seed=3000 velocity=3.3 radius=5 filling=0.4 tolerance=0.0003
-target=wall seed=3002 velocity=0.9 radius=4 filling=0.5 tolerance=0.001
-target=wall seed=3004 velocity=5.2 radius=5 filling=0.45 viscoelasticTime=3e-12 tolerance=0.0003
-target=wall seed=3006 velocity=11 radius=5 filling=0.5 material=silicate tolerance=0.001
-target=wall seed=3008 velocity=4.6 packing=bcca grains=45 tolerance=0.001
-target=wall seed=3010 velocity=27 packing=bcca grains=35 tolerance=0.001
 target=wall seed=3012 velocity=9.4 packing=bpca grains=60 tolerance=0.001
-target=wall seed=3014 velocity=22 packing=bpca grains=75 viscoelasticTime=2e-12 tolerance=0.001
 boundary=walls seed=4000 grains=70 finalFilling=0.3 strainRate=0.00028 tolerance=0.001
-boundary=walls seed=4002 grains=75 finalFilling=0.25 strainRate=0.00025 linearDamping=0 tolerance=0.001
 """
-# {name: (scenes, chance of as many beyond the tolerance, how far beyond one may be, least median)}
-BATCHES = {
-    "collisions": (COLLISIONS, 0.999, 5, 0.05),
-    "every other kind": (OTHER_KINDS, 0.996, 3, 0.03),
-    "planes": (PLANES, 0.997, 3, 0.03),
-}
 
 
-@pytest.mark.parametrize("batch", BATCHES)
-def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path, batch):
-    """With 1 in 20 beyond it at most, more than so many would be a chance of 0.1 to 0.4 %. None is far beyond it, nor
-    are steps much shorter than they need be."""
-    scenes, chance, most, median = BATCHES[batch]
-    scenes = [from_arguments(line.split()) for line in scenes.split("\n")[1:-1]]
+def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path):
+    """With 1 in 20 beyond it at most, more than so many would be a chance of 0.3 %. None is far beyond it, nor are
+    steps much shorter than they need be."""
+    scenes = [from_arguments(line.split()) for line in NOT_FITTED.split("\n")[1:-1]]
     script = lambda scene: f"{SCRIPTS}/{'compress' if 'strainRate' in scene else 'collide'}.py"
     rows = [
         {**AUTO, "threads": 1, **scene, "out": f"runs/{k:02}", "!SCRIPT": script(scene)}
@@ -162,19 +125,15 @@ def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path, batch):
     assert list(found.run) == [f"{k:02}" for k in range(len(scenes))]
     over = found.energy_closure.to_numpy() / [float(scene["tolerance"]) for scene in scenes]
     assert np.all(over > 1e-6), over  # all met
-    assert np.count_nonzero(over > 1) <= binom.ppf(chance, len(over), 0.05), over
-    assert over.max() < most and np.median(over) > median, over
+    assert np.count_nonzero(over > 1) <= binom.ppf(0.997, len(over), 0.05), over
+    assert over.max() < 3 and np.median(over) > 0.03, over
 
 
 @pytest.mark.parametrize(
     "given, what",
     [
         ({"packing": "file", "file": "any.npz"}, "packing = file"),
-        ({"packing": "bpca", "sizes": "two", "sizeRatio": 2}, "sizes = two"),
-        ({"strainRate": 1e-5, "finalPressure": 1e4}, "finalPressure"),
         ({"strainRate": 1e-5, "finalFilling": 0.6}, "finalFilling = 0.6, only 0.1 to 0.5"),
-        ({"strainRate": 1e-5, "limit": "cut"}, "limit = cut in a compression"),
-        ({"strainRate": 1e-5, "material": "silicate"}, "a rolling energy of 183 F_c delta_c, only 2.5 to 60 "),
     ],
 )
 def test_what_was_not_measured_is_refused(given, what):

@@ -2,11 +2,10 @@
 it."""
 
 import re
-import signal
 from pathlib import Path
 
 import pytest
-from running import PYTHON, TOP, call, collide, environment, read_json, refusal, start, wait_for
+from running import PYTHON, TOP, call, collide, refusal
 
 from analysis.runs.format import PARAMETER_UNITS, PARAMETER_WORDS
 from yade_scripts import collide as from_python
@@ -39,12 +38,11 @@ def test_the_question_of_the_readme(tmp_path):
     assert len(ended) == 4 and all(file.stat().st_mtime_ns == time for file, time in ended.items())
 
 
-@pytest.mark.parametrize("name, value", [("velocty", 3), ("velocity", -1), ("radius", "1e-7m")])
-def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monkeypatch, name, value):
+def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ParameterError) as wrong:
-        from_python(**{name: [value], "grains": [16, 32]})
-    assert refusal(collide(tmp_path, f"{name}={value}")) == f"collide.py: {wrong.value}"
+        from_python(velocity=[3, -1], grains=[16, 32])
+    assert refusal(collide(tmp_path, "velocity=-1")) == f"collide.py: {wrong.value}"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -54,16 +52,6 @@ def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monk
         from_python(folder="own", radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
     assert "\n2 runs; 1 undecided" in capsys.readouterr().out
-
-
-def test_an_interrupted_sweep_leaves_checkpoints(tmp_path):
-    text = "from yade_scripts import collide; collide(radius=10, velocity=10, duration=2e-6, checkpointInterval=0.1)"
-    process = start(tmp_path, PYTHON, "-c", text, env=environment(PYTHONPATH=TOP))
-    wait_for(lambda: list(tmp_path.glob("runs/*/checkpoint/recorder.npz")))
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
-    (run,) = tmp_path.glob("runs/*/run.json")
-    assert "KeyboardInterrupt" in errors and read_json(run)["outcome"] == "interrupted"
 
 
 def test_units_and_words_of_parameters_are_the_scripts_own():

