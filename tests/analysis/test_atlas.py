@@ -179,18 +179,6 @@ def test_the_gallerys_intervals_hold_the_largest_piece_of_held_out_runs():
     assert holds.mean() > 0.85 and len(holds) > 250
 
 
-def test_no_more_comes_out_of_the_gallerys_tables_than_there_was():
-    """An eroded aggregate loses half at most, and the second piece is no larger than the largest."""
-    files = sorted(query.FOLDER.glob("outcomes*.txt"))
-    assert len(files) == 4
-    for table in map(read_outcomes, files):
-        along = [-1 if axis.name == "mass_ratio" else 1 for axis in table.axes]
-        ratio = table.axes[along.index(-1)].nodes.reshape(along)
-        largest, second = table.column("largest"), table.column("second")
-        assert np.all(table.column("loss_erosion") * ratio <= rules.KEPT + 1e-4)
-        assert np.all(second <= np.minimum(largest, 1 - largest) + 1e-4)
-
-
 def test_structure_material_and_radius_of_a_query():
     of = [analysis.outcome(0.5, 200, 20, 0.1, "silicate", radius)["p_sticking"] for radius in (None, 6e-7, 1e-7)]
     assert of[0] == of[1] < of[2]

@@ -174,16 +174,6 @@ def smooth(v, n, q, f):
     return 1 - breaks - bounces, bounces, 0.5 * breaks, 0.3 * breaks, 0.2 * breaks
 
 
-def test_a_threshold_gives_dustpys_own_probabilities(sim):
-    """All stick below 1 m/s and break above: what DustPy has by default, but for the distance of the table's speeds."""
-    threshold = 1.0 / np.sqrt(BREAK / (4 / 3 * pi * 1e-21 * 1000))
-    own = np.array(sim.dust.p.frag), np.array(sim.dust.p.stick)
-    use_atlas(sim, table_of(lambda v, *_: (v < threshold, 0, 0, 0, v >= threshold), speeds=1001))
-    assert own[0][1:-1].min() < 1e-9 and own[0].max() > 0.5
-    np.testing.assert_allclose(sim.dust.p.frag, own[0], atol=0.01)
-    np.testing.assert_allclose(sim.dust.p.stick, own[1], atol=0.01)
-
-
 def test_probabilities_are_those_of_the_table_at_each_radius_s_filling(sim):
     sim.dust.fill[...] = np.linspace(0.1, 0.4, 5)[:, None]
     sim.update()

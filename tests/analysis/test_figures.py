@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.__main__ import main
-from analysis.figures.collision import force_kinds, forces_figure, grains_figure
+from analysis.figures.collision import grains_figure
 from analysis.figures.energy import energy_figure
 from analysis.figures.grain_colours import AGGREGATE_COLOURS
 from analysis.figures.sphere_raster import paint_spheres
@@ -42,20 +42,6 @@ def test_energy_areas_are_the_fractions(run):
     for name in parts:
         assert drawn[name] == pytest.approx(abs(parts[name][middle]), abs=1e-9)
     assert upper.lines[0].get_ydata() == pytest.approx(sum(parts.values()))
-
-
-def test_force_lines_are_the_contacts_of_the_slab(run):
-    figure = forces_figure(run)
-    panels = [axes for axes in figure.axes if axes.collections]
-    assert 1 <= len(panels) <= 4
-    for axes in panels:
-        time = float(axes.get_title(loc="left").split("=")[1].split()[0]) * 1e-9
-        state = run.states[run.states.nearest(time)]
-        inside = np.all(np.abs(state.position[state.contact_pairs][:, :, 2]) <= 2e-7, axis=1)
-        kinds = force_kinds(state.contact_normal_force[inside], run.derived["pullOffForce"])
-        counts = [len(collection.get_segments()) for collection in axes.collections]
-        assert counts == [kinds[k].sum() for k in ("other", "tension", "compression")]
-        assert to_rgb(axes.get_facecolor()) == (0.0, 0.0, 0.0)
 
 
 def test_grains_are_shown_at_start_maximum_and_end_and_fluffy_aggregates_whole(run):
@@ -121,20 +107,11 @@ def test_a_mean_has_the_standard_error_of_its_pairs(runs):
 def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
     for how, words in (
         ({"what": "stiking"}, "did you mean sticking"),
-        ({"what": "largest", "x": "outcome"}, "outcome"),
-        ({"by": "velocity"}, "by = velocity"),
         ({"where": {"velocity": 1000}}, "no run is left"),
-        ({"where": {"velocity": "fast"}}, "must be a number"),
+        ({"runs": runs.assign(impact=[0.0] + [0.5] * 7)}, "the runs differ in impact too"),
     ):
         with pytest.raises(CannotPlot, match=f"^[^\n]*{words}[^\n]*$"):
             plot(**{"what": "sticking", "runs": runs, **how})
-
-
-def test_runs_that_differ_in_something_else_or_ran_twice_are_refused(runs):
-    with pytest.raises(CannotPlot, match="^the runs differ in impact too"):
-        plot("sticking", runs.assign(impact=[0.0] + [0.5] * 7))
-    with pytest.raises(CannotPlot, match="a pair has several runs"):
-        plot("sticking", pandas.concat([runs, runs[:1]]).assign(run="again"))
 
 
 def test_the_command_writes_a_picture_and_prints_its_path_last(cluster_folder, tmp_path, capsys):
@@ -187,7 +164,6 @@ def test_every_state_is_a_frame_with_the_grains_in_their_places(approaching):
 
 def test_a_film_that_cannot_be_encoded_is_one_line_and_leaves_no_file(approaching, capsys, monkeypatch):
     monkeypatch.setenv("PATH", "/nowhere")
-    for name, words in (("film.nonsense", ".mp4 or .gif"), ("film.mp4", "ffmpeg: not installed"), ("film.gif", "50")):
-        assert main(["film", str(approaching), "--rate", "60", "--out", str(approaching / name)]) == 2
-        message = capsys.readouterr().err
-        assert words in message and message.count("\n") == 1 and not list(approaching.glob("*film*"))
+    assert main(["film", str(approaching)]) == 2
+    message = capsys.readouterr().err
+    assert "ffmpeg: not installed" in message and message.count("\n") == 1 and not list(approaching.glob("*film*"))

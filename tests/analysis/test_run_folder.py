@@ -2,13 +2,12 @@
 
 import io
 import json
-import shutil
 import zipfile
 
 import numpy as np
 import pytest
 from refused import refused
-from written_runs import change_arrays, flip, state_arrays, unseal
+from written_runs import change_arrays, flip, unseal
 
 from analysis import summarise
 from analysis.figures.draw import figures_of
@@ -85,28 +84,12 @@ def test_a_kind_of_run_of_a_script_of_its_own(folder):
     assert numbers["energy_closure"] < 1e-9 and numbers["outcome"] is None and numbers["d_max"] is None
 
 
-def changed(part=None, **values):
-    """What changes values of the record, or of a part of it."""
-    return lambda folder: _change_record(folder, lambda record: (record[part] if part else record).update(values))
-
-
-def history(**arrays):
-    """What changes arrays of a folder's history."""
-    return lambda folder: change_arrays(folder / "history.npz", **arrays)
-
-
 DAMAGE = {
-    "no such run folder": lambda f: shutil.rmtree(f),
     "run.json: missing": lambda f: (f / "run.json").unlink(),
     "run.json: not the record of a run": lambda f: (f / "run.json").write_text("{}"),
-    "NaN is no number": changed("parameters", velocity=float("nan")),
-    "format is 6": changed(format=6),
-    "'grainRadius' must be a positive number": changed("derived", grainRadius=0),
+    "format is 6": lambda f: _change_record(f, lambda record: record.update(format=6)),
     "history.npz: damaged": lambda f: flip(f / "history.npz", 1 / 3, 0xFF),
-    "lacks the array 'drag'": history(drag=None),
-    "'drag' has the shape (3,)": history(drag=np.zeros(3)),
-    "'contacts' must be integers": history(contacts=np.full(201, 0.5)),
-    "'time' does not increase": history(time=-np.arange(201.0)),
+    "'drag' has the shape (3,)": lambda f: change_arrays(f / "history.npz", drag=np.zeros(3)),
 }
 
 
@@ -128,11 +111,7 @@ def header_alone(file):
 
 STATE_DAMAGE = {
     "'radius' has 0 bytes, by its header 8e+300": header_alone,
-    "'radius' is 0 at index 1": dict(radius=np.array([1e-7, 0.0])),
     "'contact_pairs' must be of grains 0 to 1": dict(contact_pairs=np.array([[0, 2]])),
-    "'contact_pairs' has the shape (0, 2)": dict(contact_pairs=np.zeros((0, 2), int)),
-    "'aggregate' must be 0 or 1": dict(aggregate=np.array([0, 2])),
-    "holds no grain": state_arrays(0.0, np.zeros((0, 3)), np.zeros((0, 3)), []),
     "'position' holds a value that is not finite": dict(position=np.full((2, 3), np.nan)),
 }
 

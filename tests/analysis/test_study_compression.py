@@ -88,18 +88,6 @@ def test_what_was_made_comes_back(tmp_path):
     assert mean("filling_at_300")(where(runs, material="silicate")) == pytest.approx(0.24, rel=2e-3)
 
 
-def test_a_change_is_of_the_same_clusters(tmp_path):
-    """Twice the pressure of eq 25 at half the xi_crit, of the two clusters that have 0.8 and 1.2 of it otherwise: in
-    units of E_roll four times, and their mean is 1."""
-    for seed, factor in enumerate((0.8, 1.2, 0.9, 1.1), start=1):
-        made_compression(tmp_path / f"base-s{seed}", seed, power(factor), states=False)
-    for seed in (1, 2):
-        made_compression(tmp_path / f"xi-s{seed}", seed, power(2.0), states=False, criticalRolling=4e-10)
-    bins = fitted(runs_of(tmp_path))
-    found = k13.change(where(bins, criticalRolling=4e-10), where(bins, criticalRolling=8e-10))
-    assert found.value == pytest.approx(4.0, rel=1e-3) and found.pairs == 2
-
-
 def test_a_mean_and_a_fit_are_of_clusters_that_went_so_far(tmp_path):
     """Nine times the pressure of a cluster that ends before the bin around 0.1 makes no slope."""
     made_compression(tmp_path / "a1", 1, power(1.0), states=False)
@@ -111,17 +99,6 @@ def test_a_mean_and_a_fit_are_of_clusters_that_went_so_far(tmp_path):
     numbers = k13.by_filling(runs_of(tmp_path)).groupby("filling").seed.nunique()
     found = {round(filling, 4): number for filling, number in numbers.items()}
     assert (found[0.0133], found[0.49], found[0.625]) == (3, 2, 1) and min(found) == 0.0133
-
-
-def test_other_grains_are_sets_of_their_own(tmp_path):
-    for seed in (1, 2):
-        made_compression(tmp_path / f"a{seed}", seed, power(), states=False)
-        made_compression(tmp_path / f"b{seed}", seed, power(), states=False, grainRadius=5e-8)
-        made_compression(tmp_path / f"c{seed}", seed, power(), states=False, criticalRolling=4e-10)
-    sets = dict(list(fitted(runs_of(tmp_path)).groupby(["material", "criticalRolling"])))
-    own, small, half = (sets[key] for key in (("ice", 8e-10), ("ice (grainRadius = 5e-08)", 8e-10), ("ice", 4e-10)))
-    # E_roll/r0^3 is four times and half of K13's
-    assert len(sets) == 3 and [k13.level(small) * 4, k13.level(half) / 2] == pytest.approx([k13.level(own)] * 2)
 
 
 def test_bins_of_the_filling_factor_have_little_bias_and_keep_to_what_is_covered():

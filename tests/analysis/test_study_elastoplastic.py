@@ -162,17 +162,6 @@ def test_lines_and_exponents_are_closed_forms():
         assert a24.power_of(rows_of(model, 0.0, (80.0,)), "velocity") == pytest.approx(expected, abs=1e-6)
 
 
-def test_moduli_are_found_up_to_the_rigid_plastic_limit():
-    for model in (TRUTH, a24.Aggregates(2e6, 0.0, 0.1, 400.0)):
-        rows = rows_of(model, 1e-5)
-        stress, compliance = a24.moduli(a24.fit_moduli(rows, model.offset))
-        assert stress == pytest.approx(model.stress, rel=2e-3)
-        assert compliance == pytest.approx(model.compliance, rel=1e-2, abs=2e-9)
-        assert a24.moduli(a24.papers_way(rows))[0] == pytest.approx(model.stress, rel=5e-3)
-    assert np.isnan(a24.fit_moduli(rows_of(TRUTH, 0.0), 0.25)).all()  # no scatter, no weights
-    assert np.isnan(a24.papers_way(rows_of(TRUTH, 0.01, sizes=(40.0,)))).all()
-
-
 # ---- the study of compressed aggregates beside CPE ones ----
 
 

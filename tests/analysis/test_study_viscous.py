@@ -85,14 +85,3 @@ def test_means_over_offsets_are_exact_for_one_and_for_the_square():
     for power, exact in ((0, 1), (1, 1 / 2), (2, 1 / 3 + 1 / 12**2 / 6)):
         own = runs.assign(growth=(runs.twelfth / 12) ** power)
         assert viscous.over_offsets()(own) == pytest.approx(exact, rel=1e-12)
-
-
-def test_the_law_of_fragments_is_recovered():
-    """Sizes drawn as N^-1: as many grains in fragments of each size."""
-    text = " ".join(f"{9600 // size}x{size}" for size in (2400, 1200, 600, 300, 150, 75, 50, 25, 10, 5, 2, 1))
-    runs = pandas.DataFrame({"pair": 1, "twelfth": viscous.TWELFTHS, "fragments": text, "grains": 2400})
-    numbers, grains = viscous.by_size(runs, lambda sizes, numbers: numbers**0.7)
-    assert 2 - viscous.exponent(numbers, grains) == pytest.approx(1.3, rel=1e-9)
-    sizes = viscous.sizes_of(text)
-    of_large = (sizes[sizes > 240] ** (2 / 3)).sum() / (sizes ** (2 / 3)).sum()
-    assert viscous.large_share(runs) == pytest.approx(of_large, rel=1e-9)

@@ -13,7 +13,6 @@ from refused import refused
 
 import analysis
 from analysis.report.rows import table
-from analysis.runs.files import RunFolderError
 from analysis.runs.format import CHANNELS
 from analysis.runs.table import Column, TableError, make_table, read_table, table_text
 
@@ -69,14 +68,6 @@ def test_a_table_has_a_row_a_run(run, pair_folder, tmp_path):
     for name in ("filling_factor", "gyration_radius", "fractal_dimension", "coordination"):
         assert np.array_equal(found[f"largest_{name}"][0], piece[name], equal_nan=True)
     assert table([run, run, str(tmp_path), f"{tmp_path}/r*"]).run.tolist() == ["run", "r1"]  # each folder once
-
-
-def test_a_run_that_cannot_be_read_is_named_and_left_out(run, tmp_path):
-    (tmp_path / "run.json").write_text("{}")
-    with pytest.warns(UserWarning, match="not the record of a run"):
-        assert len(table([run, tmp_path])) == 1
-    with pytest.raises(RunFolderError, match="no run folder matches"):
-        table(f"{tmp_path}/*/*")
 
 
 def test_what_was_written_is_read_back_and_what_is_no_table_is_one_line(tmp_path):
