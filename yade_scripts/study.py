@@ -24,7 +24,6 @@ import argparse
 import os
 import signal
 import sys
-from contextlib import closing
 from pathlib import Path
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -40,8 +39,7 @@ from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
 from yade_scripts.runner.batch import LOGS
-from yade_scripts.runner.rows import refusal
-from yade_scripts.runner.study import Paced, Screen, Study
+from yade_scripts.runner.study import Study
 from yade_scripts.studies import tables
 
 SCRIPT = os.path.basename(__file__)
@@ -78,62 +76,43 @@ def place_of(table):
 def submit(study, options):
     """Submit the rows that are left and not in the queue to Slurm, or print their scripts; the exit status."""
     states, queued = study.states_with_queue(sure=True)
-    left, refused = [], 0
-    for row, state, in_queue in zip(study.rows, states, queued):
-        if reason := refusal(row):
-            tell(f"{row.name}: {reason}; the other rows are submitted", SCRIPT)
-            refused += 1
-        elif state.kind in (WAITING, FAILED) and not in_queue:
-            left.append(row)
+    refused = [(row, state) for row, state in zip(study.rows, states) if state.refused]
+    for row, state in refused:
+        tell(f"{row.name}: {state.note}; the other rows are submitted", SCRIPT)
+    left = [
+        row
+        for row, state, in_queue in zip(study.rows, states, queued)
+        if state.kind in (WAITING, FAILED) and not state.refused and not in_queue
+    ]
     jobs = slurm.jobs(study.folder, left, options.jobs)
     if options.dry_run:
         if not left:
             tell("all rows have ended, or are in the queue: nothing to submit", SCRIPT)
         texts = [f"{script}# {shell_line(slurm.command(folder, options.sbatch))}\n" for folder, _, _, script in jobs]
         print("\n".join(texts), end="", flush=True)
-        return int(refused > 0)
+        return int(bool(refused))
     study.folder.remove_logs(left)
     for folder, rows, tasks, script in jobs:
         job = slurm.submit(folder, rows, tasks, script, options.sbatch)
         print(f"Slurm job {job}: {len(rows)} rows in {tasks} tasks, {rows[0].threads} threads each", flush=True)
     done, running = (sum(state.kind == kind for state in states) for kind in (DONE, RUNNING))
     print(
-        f"{printable(study.name)}: {len(states)} rows, {done} done, {running} running, {refused} failed, "
+        f"{printable(study.name)}: {len(states)} rows, {done} done, {running} running, {len(refused)} failed, "
         f"{sum(queued)} in the queue before, {len(left)} submitted"
     )
-    return int(refused > 0)
+    return int(bool(refused))
 
 
-def run(study, stop):
-    """Run the study; returns also when stop.received."""
-    screen = Screen()
-    show = Paced(lambda: screen.draw(study.table(study.states_with_queue()[0], live=True)) if screen.shown else None)
-    with closing(study.running()) as working:
-        for _ in working:
-            if stop.received:
-                screen.close()
-                print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
-                break
-            show()
-    screen.close()
-
-
-def close(study, stop):
+def close(study, states, stop):
     """Print how it went; the exit status."""
-    states = study.states()
-    failures = [(row, state) for row, state in zip(study.rows, states) if state.kind == FAILED]
-    for row, state in failures:
-        if not row.error:  # printed at the start
+    for row, state in zip(study.rows, states):
+        if state.kind == FAILED and not row.error:  # which was printed at the start
             tell(f"{row.name}: {state.note}", SCRIPT)
-    stopped = [row for row, state in zip(study.rows, states) if state.kind not in (DONE, FAILED)]
-    for row in () if stop.received else stopped:
-        tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
-    done = sum(state.kind == DONE for state in states)
-    print(
-        f"{printable(study.name)}: {len(states)} rows, {done} done, {len(failures)} failed"
-        + (f", {len(states) - done - len(failures)} left" if stop.received else "")
-        + study.undecided(states)
-    )
+        elif state.kind not in (DONE, FAILED) and not stop.received:
+            tell(f"{row.name}: was stopped; another call resumes it", SCRIPT)
+    done, failed = (sum(state.kind == kind for state in states) for kind in (DONE, FAILED))
+    left = f", {len(states) - done - failed} left" if stop.received else ""
+    print(f"{printable(study.name)}: {len(states)} rows, {done} done, {failed} failed{left}{study.undecided(states)}")
     if stop.received:
         return 128 + stop.received
     return 0 if done == len(states) else 1
@@ -166,19 +145,17 @@ def main(arguments):
     except OSError as error:
         tell(f"{error.filename}: {error.strerror}", SCRIPT)
         return 2
-    study.forget_failures()
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     wrong = [row for row in study.rows if row.error]
     for row in wrong:
         tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
-        study.announce()
-        run(study, stop)
+        states = study.run(stop)
     except OSError as error:  # yade is missing, the disk is full
         tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)
         return 1
     stop.restore()
-    return close(study, stop)
+    return close(study, states, stop)
 
 
 if __name__ == "__main__":

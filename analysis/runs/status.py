@@ -31,6 +31,7 @@ class State:
     left: float | None = None  # wall time left by the run's own pace [s]
     note: str = ""
     host: str | None = None  # the machine on which it is running
+    refused: bool = False  # a row of a study that FAILED and must not be run as it stands
 
 
 def state(folder):

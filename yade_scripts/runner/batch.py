@@ -63,7 +63,12 @@ class Batch:
         return self
 
     def __exit__(self, *_):
-        self.stop()
+        """Have the runs write their checkpoints, and wait until they have. No other row is started."""
+        self._waiting = []
+        for worker in self._busy():
+            worker.stop()
+        while self.running():
+            self.wait()
         for worker in self._workers:
             worker.close()
 
@@ -75,8 +80,7 @@ class Batch:
         fits = lambda row: not busy or busy + row.threads <= self._threads
         while busy < self._threads and (row := next(filter(fits, self._waiting), None)):
             self._waiting.remove(row)
-            log = self._folder.log(row)
-            self._idle(log).begin(row, log)
+            self._idle(row).begin(row, self._folder.log(row))
             busy += row.threads
         return [worker.row for worker in self._busy()]
 
@@ -84,22 +88,14 @@ class Batch:
         """Return when something has happened to a row, or after so many seconds."""
         wait([worker.connection for worker in self._busy()], seconds)
 
-    def stop(self):
-        """Have the runs write their checkpoints; returns when they have. No other row is started."""
-        self._waiting = []
-        for worker in self._busy():
-            worker.stop()
-        while self.running():
-            self.wait()
-
     def _busy(self):
         return [worker for worker in self._workers if worker.row]
 
-    def _idle(self, log):
-        """A worker without a row; a new one, whose start is in the log, when all are busy."""
-        free = [worker for worker in self._workers if not worker.row and worker.is_alive()]
+    def _idle(self, row):
+        """A worker without a row; a new one, whose start is in the row's log, when all are busy."""
+        free = [worker for worker in self._workers if not worker.row and worker.process.poll() is None]
         if not free:
-            free.append(Worker(log, self._nice, self._folder.held))
+            free.append(Worker(self._folder.log(row), self._nice, self._folder.held))
             self._workers += free
         return free[0]
 
@@ -111,7 +107,7 @@ class Worker:
     messages go as it starts; lock: the study's, or None, which is free again when the last worker has ended."""
 
     def __init__(self, log, nice, lock):
-        self.row = self.run = None
+        self.row = self._run = None  # the process of the run, as soon as it can be stopped
         self.connection, theirs = multiprocessing.Pipe()
         with open(log, "a") as output, theirs:
             self.process = subprocess.Popen(
@@ -124,13 +120,9 @@ class Worker:
                 start_new_session=True,
             )
 
-    def is_alive(self):
-        """Whether it can be given a row, now or when its run has ended."""
-        return self.process.poll() is None
-
     def begin(self, row, log):
         """Have it run a row (rows.StudyRow), which resumes if it was stopped; its output goes to the end of the log."""
-        self.row, self.run, self._log, self._stopped = row, None, os.path.abspath(log), False
+        self.row, self._run, self._log, self._stopped = row, None, os.path.abspath(log), False
         cells = {**row.own_cells, "out": row.out, "resume": 1}
         arguments = [f"{name}={text}" for name, text in cells.items()]
         task = dict(script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=self._log)
@@ -138,22 +130,19 @@ class Worker:
             self.connection.send(task)
 
     def poll(self):
-        """The run's exit status, as a shell has it, when it has ended; None while it runs. The log is complete then."""
+        """Without a row, and with the end of its log, when the run has ended."""
         status = self._status()
-        if status is None:
-            return None
-        self.row = self.run = None
-        status = status if status >= 0 else 128 - status
-        with open(self._log, "a") as log:
-            log.write(summary(status))
-        return status
+        if status is not None:
+            self.row = self._run = None
+            with open(self._log, "a") as log:
+                log.write(summary(status if status >= 0 else 128 - status))
 
     def stop(self):
         """SIGTERM to the run, as soon as there is one to receive it."""
         self._stopped = True
-        if self.run:
+        if self._run:
             with suppress(ProcessLookupError):
-                os.kill(self.run, signal.SIGTERM)
+                os.kill(self._run, signal.SIGTERM)
 
     def close(self):
         """End the process, when its run has ended."""
@@ -161,9 +150,10 @@ class Worker:
         self.process.wait()
 
     def _status(self):
+        """The exit status of the run, negative for a signal; None while it runs."""
         try:
             while self.connection.poll():
-                self.run, status = self.connection.recv()
+                self._run, status = self.connection.recv()
                 if status is not None:
                     return status
                 if self._stopped:

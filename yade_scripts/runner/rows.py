@@ -81,34 +81,36 @@ def read(path):
         if row.cells.get("overwrite", "0") != "0":
             given = f"overwrite = {row.cells['overwrite']}"
             raise InputError(f"{path}: line {row.line}: {given}: a study keeps what has ended; must be 0")
-        name, script = file_name(row.description), _script(row.cells.get("!SCRIPT", "yade_scripts/collide.py"))
-        kind, parameters, threads, error = kind_of(script), None, None, None
-        try:
-            if not os.path.isfile(script):
-                raise ParameterError(f"{script}: no such script")
-            if kind:
-                parameters = kind.parse(row.parameters, row.description)
-            else:
-                known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
-                parameters = RunParameters.parse(known, row.description)
-            threads = _threads_of_yade(row.cells, parameters)
-        except UnknownParameter as problem:  # a column's, of all rows
-            of = os.path.basename(script) + (": a column !SCRIPT names another" if "!SCRIPT" not in row.cells else "")
-            raise InputError(f"{path}: {problem}, of {of}") from None
-        except ParameterError as problem:
-            parameters, error = None, f"line {row.line} of {path}: {problem}"
-        for key in (f"description = {name}", f"out = {os.path.normpath(parameters.out) if parameters else name}"):
+        found = _row(path, row)
+        folder = os.path.normpath(found.out) if found.parameters else found.name
+        for key in (f"description = {found.name}", f"out = {folder}"):
             if key in lines:
                 raise InputError(f"{path}: lines {lines[key]} and {row.line} both have {key}; must be one")
             lines[key] = row.line
-        rows.append(StudyRow(name, row.cells, script, kind, parameters, error, threads))
+        rows.append(found)
     return rows
 
 
-def _script(name):
-    """The path of a script that a table names: below the folder that one stands in, or below the top of this suite."""
-    own = os.path.join(TOP, name)
-    return own if not os.path.isfile(name) and os.path.isfile(own) else name
+def _row(path, row):
+    """StudyRow of a table.Row; raises InputError for a column that is no parameter."""
+    name = row.cells.get("!SCRIPT", "yade_scripts/collide.py")
+    script = name if os.path.isfile(name) else os.path.join(TOP, name)  # one's own, or below the top of this suite
+    kind = kind_of(script)
+    found = StudyRow(file_name(row.description), row.cells, script, kind)
+    try:
+        if not os.path.isfile(script):
+            raise ParameterError(f"{name}: no such script")
+        if kind:
+            parameters = kind.parse(row.parameters, row.description)
+        else:
+            known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
+            parameters = RunParameters.parse(known, row.description)
+        return replace(found, parameters=parameters, threads_of_yade=_threads_of_yade(row.cells, parameters))
+    except UnknownParameter as problem:  # a column's, of all rows
+        of = os.path.basename(script) + (": a column !SCRIPT names another" if "!SCRIPT" not in row.cells else "")
+        raise InputError(f"{path}: {problem}, of {of}") from None
+    except ParameterError as problem:
+        return replace(found, error=f"line {row.line} of {path}: {problem}")
 
 
 def kind_of(script):
@@ -131,29 +133,11 @@ def _threads_of_yade(cells, parameters):
 # ---- the state of a row ----
 
 
-def refusal(row):
-    """Why a row must not be run, in one line; None where it may, or has ended, or runs."""
-    found = _settled(row)
-    return found.note if found and found.kind == FAILED else None
-
-
 def state(row, log):
-    """State of a row; log: the file that its output goes to. One that must not be run is FAILED, too."""
-    found = _settled(row)
-    if found:
-        return found
-    run = status.run_of(row.out)
-    note, progress = _stopped(row.out, run)
-    problem = failure(log, row.out)
-    if problem:
-        return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
-    return State(WAITING, progress, run.get("wallTime"), note=note)
-
-
-def _settled(row):
-    """State of a row that is wrong, has ended, or is under way; None of one that may be run."""
+    """State of a row; log: the file that its output goes to."""
+    refused = lambda note: State(FAILED, note=note, refused=True)
     if row.error:
-        return State(FAILED, note=row.error)
+        return refused(row.error)
     folder, lock = row.out, under_way(row.out)  # the lock first: a run that ends now has its mark before it gives it up
     run = status.run_of(folder)
     differs = _difference(row, run) if run else None
@@ -161,14 +145,18 @@ def _settled(row):
     goes_on = differs and row.kind and checkpoint.exists(folder) and _difference(row, run, but=("duration",)) is None
     if os.path.exists(os.path.join(folder, ENDED_FILE)) and not goes_on:
         if not run:
-            return State(FAILED, note=f"{status.damage(folder)}; must be restored, or {folder} removed to run the row")
+            return refused(f"{status.damage(folder)}; must be restored, or {folder} removed to run the row")
         if differs:
-            wrong = f"{folder}: holds an ended run with {differs}; must be the same, or removed to run the row"
-            return State(FAILED, note=wrong)
+            return refused(f"{folder}: holds an ended run with {differs}; must be the same, or removed to run the row")
         return State(DONE, 1.0, run.get("wallTime"))
     if lock and not lock.can_be_followed:
-        return State(FAILED, note=f"{folder}: is run {lock}; must have ended there, or {folder}/lock be removed")
-    return status.running(folder, run, lock) if lock else None
+        return refused(f"{folder}: is run {lock}; must have ended there, or {folder}/lock be removed")
+    if lock:
+        return status.running(folder, run, lock)
+    note, progress = _stopped(folder, run)
+    if problem := failure(log, folder):
+        return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
+    return State(WAITING, progress, run.get("wallTime"), note=note)
 
 
 def _difference(row, run, but=()):

@@ -156,7 +156,7 @@ def main(arguments):
     with one_line_errors("slurm.py"):
         own = rows.read(path)[number - 1 :: tasks]
     before = states()
-    may_run = [row for row, state in zip(own, before) if state.kind in (WAITING, FAILED) and not rows.refusal(row)]
+    may_run = [row for row, now in zip(own, before) if now.kind in (WAITING, FAILED) and not now.refused]
     with Batch(folder, may_run, threads=1, nice=0) as batch:  # one after another
         while batch.running() and not stop.received:
             batch.wait(POLL)

@@ -1,20 +1,20 @@
 """A study: the rows of a table, their states, the time left, and the same as text."""
 
 import os
-import shutil
 import sys
 import time
+from contextlib import closing
 from dataclasses import replace
 
 from analysis.printable import printable
+from analysis.progress import bar
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, counts, duration_text
 from analysis.runs.status import line as run_line
 from yade_scripts.run import checkpoint
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.batch import LOGS, Batch, StudyFolder
 
-LINES = 15  # of a live table
-EVERY, SHARE = 1.0, 0.05  # s between texts, and the share of the time that making them may take
+EVERY, SHARE = 1.0, 0.05  # s between looks at all rows for the bar, and the share of the time that they may take
 POLL = 1.0  # s, for what runs elsewhere
 HEAR_SIGNALS = 0.1  # s, while runs are at work
 
@@ -47,14 +47,29 @@ class Study:
                 states[number] = replace(state, note=note)
         return states, list(map(bool, tasks))
 
-    def forget_failures(self):
-        """Remove the logs of rows that failed in an earlier call and may be run again."""
-        failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not rows.refusal(row)]
-        self.folder.remove_logs(failed)
+    def run(self, stop=None):
+        """Run what is left, with a bar meanwhile, and wait for what others run; the states at the end.
 
-    def running(self):
-        """Run all rows that are left, and wait for those that others run; an iterator that goes on meanwhile. Closing
-        it stops the runs, each with a checkpoint."""
+        stop: script.StopSignals. After a signal, or an exception such as KeyboardInterrupt, the runs are stopped, each
+        with a checkpoint."""
+        failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not state.refused]
+        self.folder.remove_logs(failed)  # they are tried again
+        self._announce()
+        due = 0.0
+        with bar(len(self.rows), "runs") as shown, closing(self._running()) as running:
+            for _ in running:
+                if stop and stop.received:
+                    shown.close()
+                    print("stopping; the runs write their checkpoints", file=sys.stderr, flush=True)
+                    break
+                begun = time.monotonic()
+                if begun >= due and not shown.disable:
+                    self._show(shown)
+                    due = time.monotonic() + max(EVERY, (time.monotonic() - begun) / SHARE)
+        return self.states()
+
+    def _running(self):
+        """Runs all rows; an iterator that goes on meanwhile, and stops the runs when it is closed."""
         tried = set()
         while True:
             states = self.states()
@@ -71,6 +86,14 @@ class Study:
                 yield
             else:
                 return
+
+    def _show(self, shown):
+        """Have a bar show how far the rows are."""
+        states = self.states()
+        left = self.time_left(states)
+        left = "time left unknown" if left is None else f"{duration_text(left)} left"
+        shown.set_postfix_str(f"{counts(states)}, {left}", refresh=False)
+        shown.update(sum(state.progress for state in states) - shown.n)
 
     def undecided(self, states):
         """'; 3 undecided (...)' of runs that have ended with their outcome open, and so with a checkpoint; or ''."""
@@ -109,7 +132,7 @@ class Study:
         work = sum(seconds * min(row.threads, self.jobs) for row, seconds in zip(self.rows, left) if seconds)
         return max(work / self.jobs, *left)
 
-    def announce(self):
+    def _announce(self):
         """Print how much there is to do, and the estimate of the time."""
         states = self.states()
         left = [state for state in states if state.kind not in (DONE, FAILED)]
@@ -128,54 +151,9 @@ class Study:
             flush=True,
         )
 
-    def table(self, states, live=False):
-        """Every row, and the headline below; live: the headline, and below it rows that run, failed, and come next,
-        in at most LINES lines."""
+    def table(self, states):
+        """A line for each row, and one for all."""
         left = self.time_left(states)
-        headline = f"{printable(self.name)}: {counts(states)}"
-        headline += "" if left is None else f"; {duration_text(left)} left"
-        shown = list(zip(self.rows, states, self.seconds_left(states)))
-        if live:
-            shown = [each for kind in (RUNNING, FAILED, WAITING) for each in shown if each[1].kind == kind]
-        lines = [run_line(row.name, state, seconds) for row, state, seconds in shown[: LINES if live else None]]
-        if not live:
-            return "\n".join([*lines, headline])
-        more = [f"  and {len(shown) - LINES} more: --status shows all"] if len(shown) > LINES else []
-        return "\n".join([headline, *lines, *more])
-
-
-class Paced:
-    """A function that is called at most each second, and for at most SHARE of the time."""
-
-    def __init__(self, function):
-        self.function, self._next = function, 0.0
-
-    def __call__(self):
-        begun = time.monotonic()
-        if begun >= self._next:
-            self.function()
-            self._next = begun + max(EVERY, (time.monotonic() - begun) / SHARE)
-
-
-class Screen:
-    """draw(text) replaces the text before on a terminal; elsewhere nothing is drawn."""
-
-    def __init__(self, stream=sys.stderr):
-        self.stream, self.shown = stream, stream.isatty()
-        self._lines = 0
-
-    def draw(self, text):
-        if self.shown:
-            size = shutil.get_terminal_size()
-            lines = [line[: size.columns - 1] for line in text.splitlines()[: size.lines - 1]]
-            self.close()
-            self.stream.write("\n".join(lines) + "\n")
-            self.stream.flush()
-            self._lines = len(lines)
-
-    def close(self):
-        """Remove the drawing."""
-        if self._lines:
-            self.stream.write(f"\033[{self._lines}A\033[J")
-            self.stream.flush()
-            self._lines = 0
+        lines = [run_line(row.name, *of) for row, *of in zip(self.rows, states, self.seconds_left(states))]
+        last = f"{printable(self.name)}: {counts(states)}" + ("" if left is None else f"; {duration_text(left)} left")
+        return "\n".join([*lines, last])

@@ -4,17 +4,15 @@ Needs yade on PATH, not to be called within YADE."""
 
 import hashlib
 import os
-from contextlib import closing
 from itertools import product
 
-from analysis.progress import bar
 from analysis.report.rows import table as table_of_runs
-from analysis.runs.status import DONE, duration_text
+from analysis.runs.status import DONE
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
 from yade_scripts.run import table
 from yade_scripts.run.parameters import CORES
-from yade_scripts.runner.study import Paced, Study
+from yade_scripts.runner.study import Study
 
 OURS = ("out", "overwrite", "resume")  # parameters that a sweep sets
 NAMED = 3  # failures that an exception names
@@ -68,7 +66,18 @@ def _sweep(kind, script, parameters, folder, jobs):
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    _run(Study(file, jobs))
+    study = Study(file, jobs)
+    study.folder.lock()
+    try:
+        states = study.run()
+    finally:
+        study.folder.unlock()
+    if undecided := study.undecided(states):
+        print(f"{len(rows)} runs{undecided}")
+    wrong = [f"{row.name}: {state.note}" for row, state in zip(study.rows, states) if state.kind != DONE]
+    if wrong:
+        more = f", and {len(wrong) - NAMED} more" if len(wrong) > NAMED else ""
+        raise RunsFailed("; ".join(wrong[:NAMED]) + more)
     return table_of_runs([row["out"] for row in rows])
 
 
@@ -105,33 +114,3 @@ def _text(name, value, column=None):
     if not text or text in ("=", "*") or any(c.isspace() or c == "#" for c in text):
         raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be without blanks and #")
     return text
-
-
-def _run(study):
-    """Run a study, with a bar meanwhile; RunsFailed unless all its runs have ended."""
-    study.folder.lock()
-    try:
-        study.forget_failures()
-        study.announce()
-        with bar(len(study.rows), "runs") as shown, closing(study.running()) as working:
-            show = Paced(lambda: _show(study, shown))
-            for _ in working:
-                show()
-            states = _show(study, shown)
-    finally:
-        study.folder.unlock()
-    if undecided := study.undecided(states):
-        print(f"{len(study.rows)} runs{undecided}")
-    wrong = [f"{row.name}: {state.note}" for row, state in zip(study.rows, states) if state.kind != DONE]
-    if wrong:
-        more = f", and {len(wrong) - NAMED} more" if len(wrong) > NAMED else ""
-        raise RunsFailed("; ".join(wrong[:NAMED]) + more)
-
-
-def _show(study, shown):
-    """Have a bar show how far the runs are; their states."""
-    states = study.states()
-    left = study.time_left(states)
-    shown.set_postfix_str("time left unknown" if left is None else f"{duration_text(left)} left", refresh=False)
-    shown.update(sum(state.progress for state in states) - shown.n)
-    return states
