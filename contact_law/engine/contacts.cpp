@@ -94,32 +94,15 @@ namespace {
 		to.forces.push_back(c.forces.normalForce + c.forces.drag);
 		to.necks.push_back(c.bonded ? c.bond.neck : 0);
 	}
-
-	template <class Lists> NormalForces normalForcesOf(const Dynamics& dynamics, const Domain& domain, Lists TouchingPairs::*lists)
-	{
-		NormalForces found;
-		eachSlotOf(dynamics, domain, lists,
-		        [&](const auto& list, int slot, int, int) { add(contactNow(dynamics, list, slot), found); });
-		return found;
-	}
 }
 
 NormalForces normalForces(const Dynamics& dynamics)
 {
-	const auto& domains = dynamics.parts();
-	std::vector<NormalForces> parts(2 * domains.size());
-#pragma omp parallel for num_threads(dynamics.threadCount())
-	for (std::size_t d = 0; d < domains.size(); ++d) {
-		parts[d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::contacts);
-		parts[domains.size() + d] = normalForcesOf(dynamics, *domains[d], &TouchingPairs::bonds);
-	}
-	NormalForces all;
-	for (const NormalForces& part : parts) {
-		all.grains.insert(all.grains.end(), part.grains.begin(), part.grains.end());
-		all.forces.insert(all.forces.end(), part.forces.begin(), part.forces.end());
-		all.necks.insert(all.necks.end(), part.necks.begin(), part.necks.end());
-	}
-	return all;
+	NormalForces found;
+	const auto visit = [&](const auto& list, int slot, int, int) { add(contactNow(dynamics, list, slot), found); };
+	eachContact(dynamics, visit);
+	eachBond(dynamics, visit);
+	return found;
 }
 
 Vec3<double> planePosition(const Dynamics& dynamics, int plane) { return dynamics.parts()[0]->planes.positions[plane]; }
@@ -130,14 +113,6 @@ Vec3<double> pushOn(const Dynamics& dynamics, int plane)
 	for (const auto& domain : dynamics.parts())
 		push = push + domain->planes.pushes[plane];
 	return push;
-}
-
-int planeContactCount(const Dynamics& dynamics)
-{
-	int total = 0;
-	for (const auto& domain : dynamics.parts())
-		total += int(domain->planes.contacts.size());
-	return total;
 }
 
 NormalForces normalForcesOnPlanes(const Dynamics& dynamics)
@@ -194,26 +169,13 @@ std::vector<OutsideForce> outsideForces(const Dynamics& dynamics)
 	return all;
 }
 
-Dissipation dissipated(const Dynamics& dynamics)
-{
-	Dissipation total;
-	for (const auto& domain : dynamics.parts())
-		total += domain->ledger.dissipated();
-	return total;
-}
-
-Counts counts(const Dynamics& dynamics)
-{
-	Counts total;
-	for (const auto& domain : dynamics.parts())
-		total += domain->ledger.counts;
-	return total;
-}
-
 Booked booked(const Dynamics& dynamics)
 {
-	Booked all { dissipated(dynamics), counts(dynamics), dynamics.counters() };
+	Booked all;
+	all.counters = dynamics.counters();
 	for (const auto& domain : dynamics.parts()) {
+		all.lost += domain->ledger.dissipated();
+		all.counts += domain->ledger.counts;
 		all.boundaryWork += domain->ledger.boundaryWork();
 		all.constraintWork += domain->constraints.work + domain->planes.work;
 		all.externalWork += domain->outside.work;

@@ -57,7 +57,7 @@ struct NormalForces {
 	std::vector<int> grains;
 	std::vector<double> forces, necks;
 };
-NormalForces normalForces(const Dynamics&); // the contacts of each domain, then the bonds of each; by all threads
+NormalForces normalForces(const Dynamics&); // the contacts, then the bonds
 // Grain and plane of each contact.
 NormalForces normalForcesOnPlanes(const Dynamics&);
 
@@ -72,16 +72,12 @@ Vec3<double> planePosition(const Dynamics&, int plane); // [m]
 Vec3<double> pushOn(const Dynamics&, int plane);        // by all grains, through the latest step [N]
 
 int contactCount(const Dynamics&); // between grains, bonds among them
-int planeContactCount(const Dynamics&);
 int bondCount(const Dynamics&);
 bool constrained(const Dynamics&); // whether any grain has a blocked degree of freedom
 // On each grain as given: of contacts, bonds and outside forces, with what blocked degrees of freedom withhold.
 std::vector<OutsideForce> wholeForces(const Dynamics&);
 std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of the grain as given
 
-// Since the start:
-Dissipation dissipated(const Dynamics&); // [J]
-Counts counts(const Dynamics&);
 Booked booked(const Dynamics&);
 
 // ---- how long a run's small step may be, and why a run broke down: which grain, which contact (soundness.cpp) ----
@@ -95,16 +91,19 @@ double unstableStepOfBonds(const Dynamics&, double neck);
 // grains are.
 double mostStretched(const Dynamics&);
 
-// A grain, and what it touches, another or a plane; both as their owner calls them, -1: none.
-struct Diagnosis {
-	int grain = -1, other = -1;
-	double speed = 0, overlap = 0, force = 0; // of the grain [m/s]; over the smaller radius; elastic, along the normal [N]
+// Grains and planes as their owner calls them; -1: none.
+struct Fastest {
+	int id = -1;
+	double speed = 0; // [m/s]
 };
-enum { FastestGrain = -1 };
-// The grain as given, or the one that moves fastest, with its contact that had the largest force before the grains moved.
-Diagnosis diagnoseGrain(const Dynamics&, int grain = FastestGrain);
-// The contact that overlaps most, by more than the smaller of its radii (no law holds there); speed and force are left out. Grain -1: none
-// does.
-Diagnosis deepestOverlap(const Dynamics&);
+Fastest fastestGrain(const Dynamics&);
+struct Overlap {
+	int first = -1, second = -1;
+	double overlap = 0; // over the smaller radius
+};
+// A grain's deepest contact, before the grains moved in the latest step: what pushed was the force there.
+Overlap deepestBefore(const Dynamics&, int id);
+// The deepest contact of all, if it overlaps by more than the smaller of its radii (no law holds there).
+Overlap deepestOverlap(const Dynamics&);
 
 } // namespace contact_law

@@ -5,7 +5,6 @@
 #include "../kernel/blocked.hpp"
 #include "plane_contacts.hpp"
 #include "touching_pairs.hpp"
-#include <cstring>
 
 namespace contact_law {
 
@@ -112,29 +111,18 @@ public:
 private:
 	std::size_t next = 0;
 
-	// The compiler's own pair of numbers, from and to places of any alignment.
-	using Two = double __attribute__((vector_size(16)));
-	static Two two(const double* first)
-	{
-		Two pair;
-		std::memcpy(&pair, first, sizeof pair);
-		return pair;
-	}
-	static void put(double* first, Two pair) { std::memcpy(first, &pair, sizeof pair); }
-
-	// The power of what is withheld of a grain, now and before. In the plane all grains come here in every step: by pairs of numbers,
-	// without branches (a tenth of the time of such scenes).
+	// The power of what is withheld of a grain, now and before. In the plane all grains come here in every step: without branches,
+	// and with two sums side by side (a tenth of the time of such scenes).
 	static double withheldFrom(Grain& g, Constrained& c)
 	{
-		const double* blocked = blockedRows[c.blocked].data();
-		double *forces = &g.fx, *before = &c.force.x;
-		const double* velocities = &g.vx;
-		Two power = { 0, 0 };
-		for (int k = 0; k < 6; k += 2) {
-			const Two force = two(forces + k), held = two(blocked + k) * force;
-			power += (two(before + k) + held) * two(velocities + k);
-			put(before + k, held);
-			put(forces + k, force - held);
+		const double* __restrict blocked = blockedRows[c.blocked].data(), * __restrict velocities = &g.vx;
+		double* __restrict forces = &g.fx, * __restrict before = &c.force.x;
+		double power[2] = { 0, 0 };
+		for (int k = 0; k < 6; ++k) {
+			const double held = blocked[k] * forces[k];
+			power[k % 2] += (before[k] + held) * velocities[k];
+			before[k] = held;
+			forces[k] -= held;
 		}
 		return power[0] + power[1];
 	}

@@ -304,13 +304,14 @@ Energies Dynamics::energies()
 		convective[d] = domains[d]->convectiveWork();
 	}
 	Energies e;
-	e.dissipated = dissipated(*this);
+	const Booked all = booked(*this);
+	e.dissipated = all.lost;
+	e.constraintWork = all.constraintWork;
+	e.externalWork = all.externalWork;
 	for (std::size_t d = 0; d < domains.size(); ++d) {
 		e.stored += stored[d];
 		e.kinetic += kinetic[d] + convective[d];
 		e.boundaryWork += domains[d]->ledger.boundaryWork() - convective[d];
-		e.constraintWork += domains[d]->constraints.work + domains[d]->planes.work;
-		e.externalWork += domains[d]->outside.work;
 	}
 	return e;
 }

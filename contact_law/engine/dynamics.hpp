@@ -100,7 +100,7 @@ public:
 	// ---- what changes a run ----
 
 	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow
-	 * (diagnoseGrain() says why). In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
+	 * (fastestGrain() says which). In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);

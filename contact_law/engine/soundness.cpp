@@ -95,107 +95,56 @@ double unstableStep(const Dynamics& dynamics)
 // ---- why a run broke down ----
 
 namespace {
-	double speedSquared(const Grain& g) { return dot(velocityOf(g), velocityOf(g)); }
-
-	int fastestGrain(const Dynamics& dynamics)
-	{
-		const Grain* grains = dynamics.state().grains.data();
-		return int(std::max_element(grains, grains + dynamics.grainCount(), [](const Grain& a, const Grain& b) {
-			return speedSquared(a) < speedSquared(b);
-		}) - grains);
-	}
-
-	// Where the pair was before it moved in the latest step: what pushed was the force there.
-	Vec3<double> separationBefore(const Dynamics& dynamics, int i, int j)
-	{
-		const Grain &a = dynamics.state().grains[i], &b = dynamics.state().grains[j];
-		Vec3<double> d = separationOf(a, b) - dynamics.state().dt * (velocityOf(a) - velocityOf(b));
-		nearestImage(dynamics.cell(), d);
-		return d;
-	}
-
-	double relativeOverlap(const SharedState& shared, int i, int j, const Vec3<double>& d)
-	{
-		return (shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d))) / std::min(shared.radius[i], shared.radius[j]);
-	}
-	double relativeOverlap(const SharedState& shared, const PlaneContact& c) { return c.before.overlap / shared.radius[c.grain]; }
-
-	// The elastic part of the normal force, with the pair's grains at this distance from each other; positive when repulsive [N].
-	double elasticForce(const Dynamics& dynamics, const ContactList& list, int slot, const Vec3<double>& separation)
-	{
-		const PairConstants<double> c = dynamics.state().constantsOf(list.first(slot), list.second(slot));
-		ContactForces<double> f {};
-		normal::addForces(c, geometryOf(separation, c.radius1 + c.radius2), f);
-		return f.normalForce;
-	}
-
-	double elasticForce(const Dynamics& dynamics, const BondList& list, int slot, const Vec3<double>& separation)
-	{
-		const Bond b = list.get(slot, dynamics.state().commonBond);
-		return bondForces(b.constants, geometryOf(separation, b.rest), b.history).normalForce;
-	}
-
-	double elasticForce(const PlaneContact& c)
-	{
-		ContactForces<double> f {};
-		normal::addForces(c.constants, ContactGeometry<double> { {}, 0, c.before.overlap }, f);
-		return f.normalForce;
-	}
-
-	int idOf(const Dynamics& dynamics, int here) { return dynamics.id(dynamics.given(here)); }
-
-	Diagnosis deepestOverlap(const Dynamics& dynamics, const Domain& domain)
+	// visit(Overlap), of every contact (but bonds) of a domain's as it was a time `ago` [s].
+	template <class Visit> void eachOverlap(const Dynamics& dynamics, const Domain& domain, double ago, Visit&& visit)
 	{
 		const SharedState& shared = dynamics.state();
-		Diagnosis found;
-		eachSlotOf(dynamics, domain, &TouchingPairs::contacts, [&](const ContactList& list, int slot, int, int) {
+		eachSlotOf(dynamics, domain, &TouchingPairs::contacts, [&](const ContactList& list, int slot, int first, int second) {
 			const int i = list.first(slot), j = list.second(slot);
-			const double overlap = relativeOverlap(shared, i, j, shared.separationOf(dynamics.cell(), i, j));
-			if (overlap <= std::max(1., found.overlap)) return;
-			const int first = idOf(dynamics, i), second = idOf(dynamics, j);
-			found = { std::min(first, second), std::max(first, second), 0, overlap };
+			const Grain &a = shared.grains[i], &b = shared.grains[j];
+			Vec3<double> d = separationOf(a, b);
+			if (ago > 0) d = d - ago * (velocityOf(a) - velocityOf(b));
+			nearestImage(dynamics.cell(), d);
+			const double overlap = shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d));
+			visit(Overlap { dynamics.id(first), dynamics.id(second), overlap / std::min(shared.radius[i], shared.radius[j]) });
 		});
-		for (const PlaneContact& c : domain.planes.contacts) {
-			const double overlap = relativeOverlap(shared, c);
-			if (overlap > std::max(1., found.overlap))
-				found = { idOf(dynamics, c.grain), shared.planes[c.plane].id, 0, overlap };
-		}
-		return found;
+		for (const PlaneContact& c : domain.planes.contacts)
+			visit(Overlap { dynamics.id(dynamics.given(c.grain)), shared.planes[c.plane].id,
+			        c.before.overlap / shared.radius[c.grain] });
 	}
 }
 
-Diagnosis diagnoseGrain(const Dynamics& dynamics, int given)
+Fastest fastestGrain(const Dynamics& dynamics)
 {
-	const SharedState& shared = dynamics.state();
-	const int grain = given == FastestGrain ? fastestGrain(dynamics) : dynamics.here(given);
-	Diagnosis found;
-	found.grain = idOf(dynamics, grain);
-	found.speed = std::sqrt(speedSquared(shared.grains[grain]));
-	const auto take = [&](int other, double overlap, double force) {
-		if (found.other >= 0 && std::abs(force) <= std::abs(found.force)) return;
-		found.other = other, found.overlap = overlap, found.force = force;
-	};
-	const auto consider = [&](const auto& list, int slot, int, int) {
-		const int i = list.first(slot), j = list.second(slot);
-		if (i != grain && j != grain) return;
-		const Vec3<double> d = separationBefore(dynamics, i, j);
-		take(idOf(dynamics, i == grain ? j : i), relativeOverlap(shared, i, j, d), elasticForce(dynamics, list, slot, d));
-	};
-	eachContact(dynamics, consider);
-	eachBond(dynamics, consider);
-	eachPlaneContact(dynamics, [&](const Domain&, const PlaneContact& c) {
-		if (c.grain == grain) take(shared.planes[c.plane].id, relativeOverlap(shared, c), elasticForce(c));
-	});
+	Fastest found;
+	for (int k = 0; k < dynamics.grainCount(); ++k) {
+		const Vec3<double> velocity = velocityOf(dynamics.state().grains[k]);
+		const double speed = std::sqrt(dot(velocity, velocity));
+		if (speed > found.speed) found = { dynamics.id(dynamics.given(k)), speed };
+	}
 	return found;
 }
 
-Diagnosis deepestOverlap(const Dynamics& dynamics)
+Overlap deepestBefore(const Dynamics& dynamics, int id)
 {
-	std::vector<Diagnosis> worst(dynamics.parts().size());
+	Overlap deepest;
+	for (const auto& domain : dynamics.parts())
+		eachOverlap(dynamics, *domain, dynamics.state().dt, [&](const Overlap& one) {
+			const bool its = one.first == id || one.second == id;
+			if (its && (deepest.first < 0 || one.overlap > deepest.overlap)) deepest = one;
+		});
+	return deepest;
+}
+
+Overlap deepestOverlap(const Dynamics& dynamics)
+{
+	std::vector<Overlap> worst(dynamics.parts().size());
 #pragma omp parallel for num_threads(dynamics.threadCount())
 	for (std::size_t d = 0; d < worst.size(); ++d)
-		worst[d] = deepestOverlap(dynamics, *dynamics.parts()[d]);
-	return *std::max_element(worst.begin(), worst.end(), [](const Diagnosis& a, const Diagnosis& b) { return a.overlap < b.overlap; });
+		eachOverlap(dynamics, *dynamics.parts()[d], 0, [&](const Overlap& one) {
+			if (one.overlap > std::max(1., worst[d].overlap)) worst[d] = one;
+		});
+	return *std::max_element(worst.begin(), worst.end(), [](const Overlap& a, const Overlap& b) { return a.overlap < b.overlap; });
 }
 
 } // namespace contact_law

@@ -17,9 +17,6 @@ using Vec3d = contact_law::Vec3<double>;
 
 YADE_PLUGIN((JKRMat)(JKRWadaConstants)(JKRWadaBond)(JKRWadaPhys)(Ip2_JKRMat_JKRMat_JKRWadaPhys)(Law2_ScGeom_JKRWadaPhys_JKRWada));
 
-CREATE_LOGGER(Ip2_JKRMat_JKRMat_JKRWadaPhys);
-CREATE_LOGGER(Law2_ScGeom_JKRWadaPhys_JKRWada);
-
 namespace {
 	// One line: what, its value, and what it must be. ValueError in Python.
 	void require(bool fine, const std::string& what, Real value, const char* must)
@@ -54,14 +51,21 @@ void JKRMat::requireInRange() const
 
 void JKRMat::postLoad(JKRMat&) { requireInRange(); }
 
-void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange() const
+void requireInRange(const contact_law::PairOptions& options, Real neck)
 {
-	requireNotNegative("linearDamping", linearDamping, "");
-	requirePositive("slidingStiffnessFactor", slidingStiffnessFactor, "");
+	requireNotNegative("linearDamping", options.linearDamping, "");
+	requirePositive("slidingStiffnessFactor", options.slidingStiffnessFactor, "");
 	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
 }
 
-void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) { requireInRange(); }
+contact_law::LimitRule limitRuleOf(const std::string& name)
+{
+	const int number = contact_law::limitRuleNumber(name);
+	if (number < 0) throw std::invalid_argument("limit = '" + name + "': must be 'held' or 'cut'");
+	return contact_law::LimitRule(number);
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) { yade::requireInRange(options(), neck); }
 
 // The attributes from and to the kernel's constants, one by one.
 #define CONTACT_LAW_TO_KERNEL(name, ...) c.name = name;
@@ -221,7 +225,7 @@ void sinterContacts(const Scene& scene, const contact_law::PairOptions& options,
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const
 {
-	requireInRange();
+	yade::requireInRange(options(), neck);
 	material1.requireInRange();
 	material2.requireInRange();
 	requirePositive("radius1", radius1, " [m]");
@@ -248,12 +252,7 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
 	return bond.pyDict();
 }
 
-void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&)
-{
-	const int number = contact_law::limitRuleNumber(limit);
-	if (number < 0) throw std::invalid_argument("limit = '" + limit + "': must be 'held' or 'cut'");
-	limitRule = contact_law::LimitRule(number);
-}
+void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&) { limitRule = limitRuleOf(limit); }
 
 unsigned Law2_ScGeom_JKRWadaPhys_JKRWada::mechanismsOf(const PairConstants<double>& c) const
 {
@@ -440,6 +439,4 @@ double contact_law_sum_of_product(const char* set, double a, double b, double c)
 
 // (a + b) - a, which -ffast-math would make b
 double contact_law_reassociated(double a, double b) { return (a + b) - a; }
-
-int contact_law_is_nan(double a) { return a != a; }
 }

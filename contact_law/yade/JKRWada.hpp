@@ -154,6 +154,10 @@ REGISTER_SERIALIZABLE(JKRWadaPhys);
  * script has torn apart stay what they are. */
 void sinterContacts(const Scene&, const contact_law::PairOptions&, Real neck, Real largestNeck, SharedConstants&, SharedBonds&);
 
+// Of the settings that functors and fused engine have in common; throw std::invalid_argument.
+void requireInRange(const contact_law::PairOptions&, Real neck);
+contact_law::LimitRule limitRuleOf(const std::string& name);
+
 class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
@@ -162,8 +166,8 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 
 public:
-	void requireInRange() const;                   // throws std::invalid_argument
-	void postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&); // likewise: within a step, YADE's threads could not pass an exception on
+	// Throws std::invalid_argument: within a step, YADE's threads could not pass an exception on.
+	void postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&);
 	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
 	        const shared_ptr<Interaction>& interaction) override;
 	void sinter(Real neck);
@@ -206,7 +210,6 @@ public:
 	);
 	// clang-format on
 	FUNCTOR2D(JKRMat, JKRMat);
-	DECLARE_LOGGER;
 };
 REGISTER_SERIALIZABLE(Ip2_JKRMat_JKRMat_JKRWadaPhys);
 
@@ -253,7 +256,6 @@ public:
 	);
 	// clang-format on
 	FUNCTOR2D(ScGeom, JKRWadaPhys);
-	DECLARE_LOGGER;
 };
 REGISTER_SERIALIZABLE(Law2_ScGeom_JKRWadaPhys_JKRWada);
 

@@ -7,7 +7,6 @@ namespace yade {
 using contact_law::Dynamics;
 
 YADE_PLUGIN((JKRWadaEngine));
-CREATE_LOGGER(JKRWadaEngine);
 
 // What a script has changed since the last step holds from here on, or is refused.
 void JKRWadaEngine::takeChanges(Moment moment)
@@ -274,17 +273,13 @@ void JKRWadaEngine::takeCleared()
 
 // ---- what others read ----
 
-bool JKRWadaEngine::hasStarted() const
+const Dynamics* JKRWadaEngine::dynamics() const
 {
 	requireOwnScene();
-	return bool(current);
+	if (!current) return nullptr;
+	current->grains.requireSame(*Omega::instance().getScene());
+	return &current->dynamics;
 }
-
-void JKRWadaEngine::requireSameBodies() const { current->grains.requireSame(*Omega::instance().getScene()); }
-
-contact_law::NormalForces JKRWadaEngine::normalForces() const { return contact_law::normalForces(current->dynamics); }
-
-contact_law::NormalForces JKRWadaEngine::normalForcesOnPlanes() const { return contact_law::normalForcesOnPlanes(current->dynamics); }
 
 boost::python::dict JKRWadaEngine::statistics() const
 {
@@ -293,23 +288,22 @@ boost::python::dict JKRWadaEngine::statistics() const
 	if (!current) return result;
 	const Dynamics& dynamics = current->dynamics;
 	result["contacts"] = contactCount(dynamics);
-	result["planeContacts"] = planeContactCount(dynamics);
+	result["planeContacts"] = contact_law::normalForcesOnPlanes(dynamics).forces.size();
 	result["bonds"] = bondCount(dynamics);
-	const contact_law::Dissipation lost = dissipated(dynamics);
-	const contact_law::Counts counts = contact_law::counts(dynamics);
+	const contact_law::Booked all = contact_law::booked(dynamics);
 	for (int mode = 0; mode < contact_law::bondModeCount; ++mode) {
 		const auto& [name, energy] = contact_law::bondModes[mode];
-		result[name] = counts.brokenBonds[mode];
-		result[std::string(name) + "Energy"] = lost.*energy;
+		result[name] = all.counts.brokenBonds[mode];
+		result[std::string(name) + "Energy"] = all.lost.*energy;
 	}
 	result["domains"] = dynamics.parts().size();
-	result["contactUpdates"] = dynamics.counters().contactUpdates;
-	result["events"] = counts.events;
-	result["formed"] = counts.formed;
-	result["broken"] = counts.broken;
-	result["searches"] = dynamics.counters().searches;
-	result["distanceChecks"] = dynamics.counters().distanceChecks;
-	result["orders"] = dynamics.counters().orders;
+	result["contactUpdates"] = all.counters.contactUpdates;
+	result["events"] = all.counts.events;
+	result["formed"] = all.counts.formed;
+	result["broken"] = all.counts.broken;
+	result["searches"] = all.counters.searches;
+	result["distanceChecks"] = all.counters.distanceChecks;
+	result["orders"] = all.counters.orders;
 	result["instructions"] = dynamics.state().passes->name;
 	return result;
 }

@@ -74,11 +74,8 @@ public:
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as
 	// the lock lives.
 	std::unique_lock<std::mutex> atRest(const char* call) const;
-	// For JKRWadaSnapshot, from the first step on: contacts by the order of their bodies' ids, where the bodies are still the same.
-	bool hasStarted() const;
-	void requireSameBodies() const;
-	contact_law::NormalForces normalForces() const;
-	contact_law::NormalForces normalForcesOnPlanes() const; // planes: Walls by rising id
+	// From the first step on, otherwise null. Refuses where the bodies are not the same any more.
+	const contact_law::Dynamics* dynamics() const;
 	boost::python::dict statistics() const;
 	virtual ~JKRWadaEngine() {}
 	// clang-format off
@@ -141,7 +138,6 @@ public:
 			"instructions.")
 	);
 	// clang-format on
-	DECLARE_LOGGER;
 };
 REGISTER_SERIALIZABLE(JKRWadaEngine);
 

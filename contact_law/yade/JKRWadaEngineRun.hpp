@@ -68,14 +68,8 @@ public:
 	void withdrawInStep(Scene&); // before take()
 
 private:
-	struct Load {
-		Vector3r force, torque;
-		bool operator==(const Load& other) const { return force == other.force && torque == other.torque; }
-		Load operator+(const Load& other) const { return { force + other.force, torque + other.torque }; }
-		Load operator-(const Load& other) const { return { force - other.force, torque - other.torque }; }
-		bool isZero() const { return force.isZero(0) && torque.isZero(0); }
-	};
-	static Load notPermanent(Scene&, int id);
+	using Load = Eigen::Matrix<Real, 6, 1>; // force and torque
+	static std::vector<Load> notPermanent(Scene&);
 	std::vector<Load> before, after; // write(), of each body: what is not permanent
 };
 

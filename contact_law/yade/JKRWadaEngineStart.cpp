@@ -63,20 +63,17 @@ void JKRWadaEngine::requireSameSettings() const
 
 void JKRWadaEngine::requireInRange() const
 {
-	const auto atLeastOne = [](const char* name, int value) {
-		if (value < 1) refuseInEngine(std::string(name) + " = " + text(value) + ": must be >= 1");
-	};
-	atLeastOne("subSteps", subSteps), atLeastOne("threads", threads);
 	constexpr int mostSubSteps = 1000000; // of a pair some seconds; nothing stops an O.step that has begun
-	if (subSteps > mostSubSteps) refuseInEngine("subSteps = " + text(subSteps) + ": must be <= " + text(mostSubSteps));
+	if (subSteps < 1 || subSteps > mostSubSteps)
+		refuseInEngine("subSteps = " + text(subSteps) + ": must be >= 1 and <= " + text(mostSubSteps));
+	if (threads < 1) refuseInEngine("threads = " + text(threads) + ": must be >= 1");
 	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
-	if (!(linearDamping >= 0 && std::isfinite(linearDamping)))
-		refuseInEngine("linearDamping = " + text(linearDamping) + ": must be >= 0");
-	if (!(slidingStiffnessFactor > 0 && std::isfinite(slidingStiffnessFactor)))
-		refuseInEngine("slidingStiffnessFactor = " + text(slidingStiffnessFactor) + ": must be > 0");
-	if (neck != 0 && !(neck > 0 && neck <= contact_law::largestNeck))
-		refuseInEngine("neck = " + text(neck) + ": must be 0 (no bonds), or up to 0.7 for sintered bonds");
-	if (contact_law::limitRuleNumber(limit) < 0) refuseInEngine("limit = " + text(limit) + ": must be 'held' or 'cut'");
+	try {
+		yade::requireInRange({ linearDamping, slidingStiffnessFactor }, neck);
+		limitRuleOf(limit);
+	} catch (const std::invalid_argument& refusal) {
+		refuseInEngine(refusal.what());
+	}
 }
 
 void JKRWadaEngine::requireOwnScene() const
@@ -100,7 +97,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
 	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
-	options.limit = contact_law::LimitRule(contact_law::limitRuleNumber(limit));
+	options.limit = limitRuleOf(limit);
 	return options;
 }
 

@@ -127,18 +127,18 @@ boost::python::dict JKRWadaSnapshot::read() const
 	Scene& scene = *Omega::instance().getScene();
 	const auto* fused = fusedEngine(scene);
 	const auto rest = fused ? fused->atRest("contact_law.snapshot()") : std::unique_lock<std::mutex>();
-	const bool started = fused && fused->hasStarted(), asItIs = fused || isOfOneMoment(scene);
+	const contact_law::Dynamics* dynamics = fused ? fused->dynamics() : nullptr;
+	const bool asItIs = fused || isOfOneMoment(scene);
 	boost::python::dict result;
 	result["time"] = scene.time;
 	// within a step the fused engine is at its end already; after one the moment of the functors' forces was before it
-	if (started && fused->inStep()) result["time"] = scene.time + scene.dt;
+	if (dynamics && fused->inStep()) result["time"] = scene.time + scene.dt;
 	if (!asItIs && scene.subStep < 0) result["time"] = scene.time - scene.dt;
-	if (started) fused->requireSameBodies();
 	const Grains grains = grainsOf(scene, asItIs);
 	const Planes planes(scene, asItIs);
 	NormalForces contacts, onPlanes;
-	if (started)
-		contacts = fused->normalForces(), onPlanes = fused->normalForcesOnPlanes();
+	if (dynamics)
+		contacts = contact_law::normalForces(*dynamics), onPlanes = contact_law::normalForcesOnPlanes(*dynamics);
 	else
 		readContacts(scene, grains, planes, contacts, onPlanes);
 	result["ids"] = column(grains.ids);

@@ -28,56 +28,53 @@ namespace {
 	}
 }
 
-SceneForces::Load SceneForces::notPermanent(Scene& scene, int id)
+std::vector<SceneForces::Load> SceneForces::notPermanent(Scene& scene)
 {
-	const Load all { scene.forces.getForce(id), scene.forces.getTorque(id) };
-	if (!scene.forces.getPermForceUsed()) return all;
-	const Load kept { scene.forces.getPermForce(id), scene.forces.getPermTorque(id) };
-	return all - kept;
+	scene.forces.sync();
+	std::vector<Load> all(scene.bodies->size());
+	for (int id = 0; id < int(all.size()); ++id) {
+		all[id] << scene.forces.getForce(id), scene.forces.getTorque(id);
+		const OutsideForce kept = permanentOn(scene, id);
+		all[id].head<3>() -= fromKernel(kept.force), all[id].tail<3>() -= fromKernel(kept.torque);
+	}
+	return all;
 }
 
 void SceneForces::write(
         Scene& scene, const SceneGrains& grains, const contact_law::Dynamics& dynamics, const std::vector<OutsideForce>& outside)
 {
 	withdraw(scene);
-	scene.forces.sync();
 	std::vector<OutsideForce> added = contact_law::wholeForces(dynamics);
 	// those of other engines are there until ForceResetter's turn; without it, only the permanent ones are
 	const bool there = hasForceResetter(scene);
+	before = notPermanent(scene);
 	for (const OutsideForce& held : outside) {
 		const OutsideForce shown = there ? held : permanentOn(scene, grains.idOf(held.grain));
 		OutsideForce& of = added[held.grain];
 		of.force = of.force - shown.force, of.torque = of.torque - shown.torque;
 	}
-	const int bodies = int(scene.bodies->size());
-	for (int id = 0; id < bodies; ++id)
-		before.push_back(notPermanent(scene, id));
 	for (const OutsideForce& f : added) {
 		scene.forces.addForce(grains.idOf(f.grain), fromKernel(f.force));
 		scene.forces.addTorque(grains.idOf(f.grain), fromKernel(f.torque));
 	}
-	scene.forces.sync();
-	for (int id = 0; id < bodies; ++id)
-		after.push_back(notPermanent(scene, id));
+	after = notPermanent(scene);
 }
 
 void SceneForces::withdraw(Scene& scene)
 {
 	if (after.empty()) return;
-	scene.forces.sync();
-	std::vector<Load> left;
-	bool emptied = false; // by a script's O.forces.reset(): nothing that stands there is of write()
-	for (int id = 0; id < int(scene.bodies->size()); ++id)
-		left.push_back(notPermanent(scene, id));
+	std::vector<Load> left = notPermanent(scene);
 	const std::size_t written = std::min(left.size(), after.size()); // there may be more bodies since, or none
+	bool emptied = false; // by a script's O.forces.reset(): nothing that stands there is of write()
 	for (std::size_t id = 0; id < written; ++id)
-		emptied = emptied || (left[id].isZero() && !(after[id] == before[id]));
+		emptied = emptied || (left[id].isZero(0) && after[id] != before[id]);
 	for (std::size_t id = 0; id < written && !emptied; ++id)
-		left[id] = left[id] == after[id] ? before[id] : before[id] + (left[id] - after[id]);
+		left[id] = before[id] + (left[id] - after[id]);
 	scene.forces.reset(scene.iter);
 	for (int id = 0; id < int(left.size()); ++id) {
-		if (!left[id].force.isZero(0)) scene.forces.addForce(id, left[id].force);
-		if (!left[id].torque.isZero(0)) scene.forces.addTorque(id, left[id].torque);
+		if (left[id].isZero(0)) continue;
+		scene.forces.addForce(id, left[id].head<3>());
+		scene.forces.addTorque(id, left[id].tail<3>());
 	}
 	before.clear(), after.clear();
 }

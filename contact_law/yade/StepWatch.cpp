@@ -5,7 +5,6 @@
 
 namespace yade {
 
-using contact_law::Diagnosis;
 using contact_law::Dynamics;
 using Motions = std::vector<contact_law::GrainMotion>;
 
@@ -13,19 +12,21 @@ namespace {
 	// Of all energies. Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
 	constexpr double lossRegained = 0.1, sumChanged = 0.5;
 
-	std::string withItsContact(const Diagnosis& d)
+	std::string withItsContact(const Dynamics& dynamics, int id)
 	{
-		if (d.other < 0) return "; it touches no other";
-		return "; its contact with the largest force is with " + bodyName(d.other) + " (overlap " + rounded(d.overlap)
-		        + " of the smaller radius, normal force " + rounded(d.force) + " N)";
+		const contact_law::Overlap deepest = contact_law::deepestBefore(dynamics, id);
+		if (deepest.first < 0) return "; it touches no other";
+		return "; its deepest contact is with " + bodyName(deepest.first == id ? deepest.second : deepest.first) + " (overlap "
+		        + rounded(deepest.overlap) + " of the smaller radius)";
 	}
 }
 
 std::string StepWatch::tooDeep(const Dynamics& dynamics)
 {
-	const Diagnosis d = contact_law::deepestOverlap(dynamics);
-	if (d.grain < 0) return "";
-	return bodyName(d.grain) + " and " + bodyName(d.other) + " overlap by " + rounded(d.overlap) + " of the smaller radius";
+	const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics);
+	if (deepest.first < 0) return "";
+	return bodyName(std::min(deepest.first, deepest.second)) + " and " + bodyName(std::max(deepest.first, deepest.second))
+	        + " overlap by " + rounded(deepest.overlap) + " of the smaller radius";
 }
 
 std::string StepWatch::wrong(
@@ -41,23 +42,23 @@ std::string StepWatch::wrong(
 	const auto& c = dynamics.state().common;
 	found = wrongEnergies(*energies, c.pullOffForce * c.pullOffOverlap);
 	if (found.empty()) return "";
-	const Diagnosis fastest = contact_law::diagnoseGrain(dynamics);
-	return found + "; " + bodyName(fastest.grain) + " is the fastest (" + rounded(fastest.speed) + " m/s)" + withItsContact(fastest);
+	const auto [fastest, speed] = contact_law::fastestGrain(dynamics);
+	return found + "; " + bodyName(fastest) + " is the fastest (" + rounded(speed) + " m/s)" + withItsContact(dynamics, fastest);
 }
 
 std::string StepWatch::wrongMotion(const Dynamics& dynamics, const Motions& motions, long made, long wanted) const
 {
-	Diagnosis found;
-	if (made < wanted) found = contact_law::diagnoseGrain(dynamics);
 	const auto isFinite = [&](std::size_t k) { return finite(motions[k]); };
-	if (found.grain < 0 && !forAll(motions.size(), dynamics.threadCount(), isFinite))
-		for (std::size_t k = 0; k < motions.size() && found.grain < 0; ++k)
-			if (!isFinite(k)) found = contact_law::diagnoseGrain(dynamics, int(k));
-	if (found.grain < 0) return "";
-	if (!std::isfinite(found.speed))
-		return bodyName(found.grain) + " has no finite position or velocity any more" + withItsContact(found);
-	return bodyName(found.grain) + " moves at " + rounded(found.speed) + " m/s, more than half the smallest radius in a small step"
-	        + withItsContact(found);
+	if (!forAll(motions.size(), dynamics.threadCount(), isFinite)) {
+		int k = 0;
+		while (isFinite(k))
+			++k;
+		return bodyName(dynamics.id(k)) + " has no finite position or velocity any more" + withItsContact(dynamics, dynamics.id(k));
+	}
+	if (made == wanted) return "";
+	const auto [fastest, speed] = contact_law::fastestGrain(dynamics);
+	return bodyName(fastest) + " moves at " + rounded(speed) + " m/s, more than half the smallest radius in a small step"
+	        + withItsContact(dynamics, fastest);
 }
 
 // That a run is unstable shows in its energies while all numbers are finite still. contactEnergy: of one contact, F_c delta_c [J]; bonded

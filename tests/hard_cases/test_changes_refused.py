@@ -72,7 +72,7 @@ OUT_OF_RANGE = {
     "slidingStiffnessFactor=0.0": ["slidingStiffnessFactor = 0: must be > 0"],
     "subSteps=0": ["subSteps = 0: must be >= 1"],
     "threads=-3": ["threads = -3: must be >= 1"],
-    "subSteps=2**31 - 1": ["subSteps = 2147483647: must be <= 1000000"],
+    "subSteps=2**31 - 1": ["subSteps = 2147483647", "<= 1000000"],
     "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
     "neck=0.8": ["neck = 0.8"],
     "limit='Cut'": ["limit = 'Cut': must be 'held' or 'cut'"],

@@ -13,9 +13,8 @@
 namespace yade {
 
 namespace Attr {
-	// noSave: not written by O.save; readonly: Python cannot assign; triggerPostLoad: assigning from Python calls callPostLoad;
-	// hidden: Python doesn't see it, but it is saved.
-	enum flags { noSave = 1, readonly = 2, triggerPostLoad = 4, hidden = 8 };
+	// readonly: Python cannot assign; triggerPostLoad: assigning from Python calls callPostLoad; hidden: Python doesn't see it.
+	enum flags { readonly = 2, triggerPostLoad = 4, hidden = 8 };
 	constexpr int join(int given = 0) { return given; } // flags may be left empty
 } // namespace Attr
 
@@ -55,8 +54,7 @@ namespace attributes {
 	template <class Archive, class Class> void serialize(Archive& archive, Class& self)
 	{
 		Class::visitAttributes([&](auto attribute) {
-			using A = decltype(attribute);
-			if constexpr (!(A::flags & Attr::noSave)) archive& boost::serialization::make_nvp(attribute.name, self.*A::member);
+			archive& boost::serialization::make_nvp(attribute.name, self.*decltype(attribute)::member);
 		});
 	}
 

@@ -106,8 +106,8 @@ public:
 			Vec3<double> size = engine->cell().size;
 			size = size + time * contact_law::Images<double>::times(vector(scene.head.strainRate), size);
 			if (engine->run(now, scene.periodic() ? &size : nullptr) < now) {
-				const contact_law::Diagnosis what = contact_law::diagnoseGrain(*engine);
-				throw std::runtime_error("the run broke down: grain " + std::to_string(what.grain) + " moves at "
+				const contact_law::Fastest what = contact_law::fastestGrain(*engine);
+				throw std::runtime_error("the run broke down: grain " + std::to_string(what.id) + " moves at "
 				        + std::to_string(what.speed) + " m/s");
 			}
 			scene.head.time += time;

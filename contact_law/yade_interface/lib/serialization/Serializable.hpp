@@ -5,10 +5,6 @@
 #include <lib/base/Math.hpp>
 #include <lib/factory/ClassFactory.hpp>
 
-// YADE's logger is not in its plugin interface: the macros that stand in every class of its idiom compile to nothing here.
-#define DECLARE_LOGGER static_assert(true, "")
-#define CREATE_LOGGER(className) static_assert(true, "")
-
 /* Saving a class saves its base first. The bases' own serialize functions are not exported by YADE's libraries; what is exported, for each base and each
    archive, are the functions one layer up, oserializer::save_object_data and iserializer::load_object_data: exactly those are linked to.
    ("extern template class" would claim more than is exported, and fail to link without optimisation.) */
