@@ -181,9 +181,13 @@ DEVICE ?= sm_90
 build/gpu/libprocessor.so: contact_law/gpu/ensemble.cu build/flags.list
 	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) -shared -x c++ $<)
 gpu: build/gpu/libdevice.so
-build/gpu/libdevice.so: $(wildcard contact_law/gpu/* contact_law/kernel/*)
-	@mkdir -p build/gpu
-	@nvcc -O3 -std=c++17 -arch=$(DEVICE) --expt-relaxed-constexpr -diag-suppress 20091 -Xcompiler -fPIC -shared contact_law/gpu/ensemble.cu -o $@
+NVCC = nvcc -O3 -std=c++17 -arch=$(DEVICE) --expt-relaxed-constexpr -diag-suppress 20091 -Xcompiler -fPIC -shared
+OF_THE_DEVICE := contact_law/gpu/ensemble.cu $(wildcard contact_law/gpu/*.hpp contact_law/kernel/*.hpp)
+build/gpu/libdevice.so: $(OF_THE_DEVICE)
+	$(call COMPILE,$(NVCC) $<)
+# Of other numbers: THREADS of a block x BLOCKS of a multiprocessor.
+build/gpu/libdevice-%.so: $(OF_THE_DEVICE)
+	$(call COMPILE,$(NVCC) -DTHREADS=$(word 1,$(subst x, ,$*)) -DBLOCKS=$(word 2,$(subst x, ,$*)) $<)
 
 HARNESS_OBJECTS := $(patsubst tests/benchmarks/harness/%.cpp,$(OBJECTS_FOLDER)/harness/%.o,$(wildcard tests/benchmarks/harness/*.cpp))
 

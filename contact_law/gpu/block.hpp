@@ -38,7 +38,11 @@ namespace contact_law {
 namespace gpu {
 
 #ifdef __CUDACC__
-	constexpr int mostThreads = 256; // of a block
+#ifndef THREADS
+#define THREADS 256
+#define BLOCKS 2
+#endif
+	constexpr int mostThreads = THREADS, blocksSideBySide = BLOCKS; // of a block; on a multiprocessor
 	GPU int thread() { return int(threadIdx.x); }
 	GPU int threads() { return int(blockDim.x); }
 	GPU int takeNext(int& count) { return atomicAdd(&count, 1); }

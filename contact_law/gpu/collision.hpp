@@ -84,14 +84,14 @@ namespace gpu {
 		double *twist, *rest, *dragBefore, *normalForce; // rest: of bonds [m]; normalForce: at the latest sample
 		Vectors force, torque1, torque2;                 // kicks
 		Vectors forceBefore, torqueBefore1, torqueBefore2;
-		PairConstants<double>* constants;     // of each slot, of each bond: where pairs are unlike
+		PairConstants<double>* constants; // of each slot, of each bond: where pairs are unlike
 		BondConstants<double>* bondConstants;
 		int* movedTo;
 		double* copy; // room to move slots
 
 		// ---- pairs of neighbours ----
 		int *pairFirst, *pairSecond, *pairSlot; // pairSlot: -1, or the latest slot that it had
-		int *pairsOfGrain;
+		int* pairsOfGrain;
 
 		Sums* sums;
 		Sample* sample;
@@ -117,8 +117,8 @@ namespace gpu {
 		array(c.slotsOfGrain, grains * c.room.contactsOfAGrain);
 		array(c.material, c.room.kinds);
 		array(c.first, slots), array(c.second, slots), array(c.state, slots), array(c.movedTo, slots);
-		for (Vectors* of : { &c.pointer1, &c.pointer2, &c.force, &c.torque1, &c.torque2, &c.forceBefore, &c.torqueBefore1,
-		             &c.torqueBefore2 })
+		for (Vectors* of :
+		        { &c.pointer1, &c.pointer2, &c.force, &c.torque1, &c.torque2, &c.forceBefore, &c.torqueBefore1, &c.torqueBefore2 })
 			vectors(*of, slots);
 		for (double** of : { &c.twist, &c.rest, &c.dragBefore, &c.normalForce, &c.copy })
 			array(*of, slots);

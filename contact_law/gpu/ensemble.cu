@@ -45,7 +45,7 @@ namespace gpu {
 		{
 			return succeeded(cudaMemcpy(to, from.data, size, cudaMemcpyDeviceToHost));
 		}
-		__global__ void __launch_bounds__(mostThreads, 2) runAll(Collision* const* collisions, long long steps)
+		__global__ void __launch_bounds__(mostThreads, blocksSideBySide) runAll(Collision* const* collisions, long long steps)
 		{
 			runAny(*collisions[blockIdx.x], steps);
 		}

@@ -8,8 +8,14 @@ namespace gpu {
 
 	// ---- pairs ----
 
-	GPU inline const PairConstants<double>& constantsOf(const Collision& c, int slot) { return c.uniform ? c.common : c.constants[slot]; }
-	GPU inline const BondConstants<double>& bondOf(const Collision& c, int slot) { return c.uniform ? c.commonBond : c.bondConstants[slot]; }
+	GPU inline const PairConstants<double>& constantsOf(const Collision& c, int slot)
+	{
+		return c.uniform ? c.common : c.constants[slot];
+	}
+	GPU inline const BondConstants<double>& bondOf(const Collision& c, int slot)
+	{
+		return c.uniform ? c.commonBond : c.bondConstants[slot];
+	}
 	GPU inline double reachOf(const Collision& c, int i, int j) { return neck::shrunkRadius(c.neck) * (c.radius[i] + c.radius[j]); }
 
 	GPU inline void deriveConstants(Collision& c, int slot)
@@ -23,8 +29,8 @@ namespace gpu {
 
 	GPU inline ContactMotion motionOf(const Collision& c, int i, int j, double dt)
 	{
-		return { c.position[i] - c.position[j], c.velocity[i] - c.velocity[j], c.spin[i], c.spin[j], dt, 1 / c.mass[i] + 1 / c.mass[j],
-			{ 0, 0, 0 }, 1 / c.inertia[i], 1 / c.inertia[j] };
+		return { c.position[i] - c.position[j], c.velocity[i] - c.velocity[j], c.spin[i], c.spin[j], dt,
+			1 / c.mass[i] + 1 / c.mass[j], { 0, 0, 0 }, 1 / c.inertia[i], 1 / c.inertia[j] };
 	}
 
 	// ---- slots ----
@@ -277,11 +283,11 @@ namespace gpu {
 		c.spin.set(i, c.spin[i] + (time / c.inertia[i]) * push.torque);
 	}
 
-	GPU inline void move(Collision& c)
+	template <unsigned mechanisms> GPU void move(Collision& c)
 	{
 		EACH(i, c.grains)
 		{
-			c.velocityBefore.set(i, c.velocity[i]);
+			if constexpr (bool(mechanisms & Drag)) c.velocityBefore.set(i, c.velocity[i]);
 			kick(c, i, c.dt);
 			const Vector v = c.velocity[i], x = c.position[i] + c.dt * v, moved = x - c.listed[i];
 			c.position.set(i, x);
@@ -385,7 +391,7 @@ namespace gpu {
 	{
 		if (c.step == 0 && c.samples == 0) begin<mechanisms>(c);
 		for (long long made = 0; made < steps && c.stepsLeft > 0 && c.failure == Failure::None; ++made) {
-			move(c);
+			move<mechanisms>(c);
 			FIRST
 			{
 				++c.step;
