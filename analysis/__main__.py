@@ -11,7 +11,7 @@ if __name__ == "__main__":
     end_quietly(*ENDING)
     require_libraries()
 
-from .commands import in_one_line, numbers, pictures, state, study  # noqa: E402
+from .commands import in_one_line, numbers, pictures, study  # noqa: E402
 from .printable import printable  # noqa: E402
 
 
@@ -38,7 +38,7 @@ def _parser():
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="print version and commit, and exit")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for module in (numbers, pictures, state, study):
+    for module in (numbers, pictures, study):
         module.add_parsers(commands)
     return parser
 

@@ -244,12 +244,9 @@ def _may_meet(kind, row, pieces):
 def _may_break(kind, row, pieces):
     """Whether what may break off the largest piece would make another outcome; False where the pieces are not (yet)
     of this outcome."""
-    cut, side = pieces.loose_cuts()
     largest, second = [*np.bincount(pieces.labels) / len(pieces.labels), 0.0][:2]
-    lost = side[cut == 0].max(initial=0.0) / pieces.mass.sum()
-    now = outcome({**row, "largest": largest, "second": second})
-    after = outcome({**row, "largest": largest - lost, "second": max(second, lost)})
-    return now == kind and after != kind
+    without = lambda lost: str(outcome({**row, "largest": largest - lost, "second": max(second, lost)}))
+    return pieces.why_breaking(kind, slice(None), {0: without}) is not None
 
 
 FEWEST = 5  # fragments of which an index is estimated

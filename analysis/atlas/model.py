@@ -26,7 +26,7 @@ from .rules import KINDS, OF_KIND, change, outcome
 from .variables import FIT, ONE_CONTACT, energy, fit_and_held_out, scaled, slow, variables
 
 MEMBERS = 40  # fits with random weights
-ORDER = 3  # the best one by scores.py
+ORDER = 3  # the best one on held-out runs
 STRENGTHS = 0.1, 0.3, 1.0, 3.0, 10.0  # 1/regularisation; cross-validation chooses one
 STRENGTH = 3.0  # which it chooses for all runs together
 LEVEL = 0.9  # of all intervals

@@ -1,5 +1,6 @@
 """The commands of python3 -m analysis: each module adds its own to the parser, and loads what they need when they
-run."""
+run. A command is a function of the options that returns the exit status: 0, or FAILED when something could not be
+read or written."""
 
 import argparse
 from pathlib import Path
@@ -7,6 +8,16 @@ from pathlib import Path
 from ..printable import FAILED, complain, printable  # noqa: F401
 
 RUNS = "run folder, folder that holds run folders, or a pattern such as 'runs/**'"
+
+
+def add_command(commands, command, about, description=None, runs=None, **more):
+    """A parser for a command's options, added to argparse's subparsers; runs: help of its argument RUNS, if it has
+    one."""
+    parser = commands.add_parser(command.__name__, help=about, description=description, **more)
+    parser.set_defaults(command=command)
+    if runs:
+        parser.add_argument("runs", nargs="+", metavar="RUNS", help=runs)
+    return parser
 
 
 def number(is_right, must_be):
@@ -20,6 +31,17 @@ def number(is_right, must_be):
         if not is_right(value):
             raise argparse.ArgumentTypeError(f"{text}: must be {must_be}")
         return value
+
+    return of
+
+
+def with_ending(ending):
+    """A type of argparse's: the Path of a file with this ending."""
+
+    def of(text):
+        if Path(text).suffix != ending:
+            raise argparse.ArgumentTypeError(f"{text}: must end in {ending}")
+        return Path(text)
 
     return of
 
@@ -39,13 +61,3 @@ def in_one_line(options):
             raise
         complain(error)
     return FAILED
-
-
-def write_of_run(options, name, write):
-    """Exit status of a command that writes one file of options.run: write(RunFolder, Path), to options.out or to
-    `name` in its folder."""
-    from ..runs.folder import open_run
-
-    folder = open_run(options.run)
-    print(printable(write(folder, Path(options.out) if options.out else folder.path / name)))
-    return 0

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..figures.grain_colours import COLOURINGS
 from ..printable import printable
-from . import FAILED, RUNS, complain, number, write_of_run
+from . import FAILED, RUNS, add_command, complain, number, with_ending
 
 TRUTHS = {"True": True, "False": False}
 FORMATS = "vtk", "xyz"
@@ -14,43 +14,35 @@ FORMATS = "vtk", "xyz"
 def add_parsers(commands):
     """Add the commands to argparse's subparsers."""
     _add_plot(commands)
-    figures = _of_one_run(commands, "figures", "draw a run's figures", "FOLDER", "RUN/figures")
-    figures.description = (
-        "Write motion.png (d and v against time, of equal aggregates), energy.png (the channels), grains.png (the "
-        "grains, dense aggregates cut through the middle) and forces.png (contact forces); of a compression "
-        "compression.png alone."
-    )
-    figures.set_defaults(command=draw_figures)
-    view = _of_one_run(commands, "view", "write a page on which the aggregates can be turned", "FILE", "RUN/view.html")
-    view.description = (
-        "Write the saved states as one HTML file for a browser: turn, zoom, go through the states, colour by "
-        "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js (Debian: "
-        "libjs-three)."
-    )
-    view.add_argument("--three", metavar="FOLDER", help="three.js, r110 to r147 (default: Debian's)")
-    view.set_defaults(command=write_view)
-    film = _of_one_run(commands, "film", "write a film of a run's states", "FILE", "RUN/film.mp4; .gif: repeats")
-    film.description = "Write a film with a frame for each saved state. Needs ffmpeg."
+    about = "Write the figures that a run of its kind has as NAME.png, and print their paths."
+    _of_one_run(commands, figures, "draw a run's figures", about, "FOLDER", "RUN/figures")
+    about = "Write the saved states as one HTML file for a browser: turn, zoom, go through the states, colour by "
+    about += "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js (Debian: "
+    about += "libjs-three)."
+    short = "write a page on which the aggregates can be turned"
+    parser = _of_one_run(commands, view, short, about, "FILE", "RUN/view.html", type=with_ending(".html"))
+    parser.add_argument("--three", metavar="FOLDER", help="three.js, r110 to r147 (default: Debian's)")
+    about = "Write a film with a frame for each saved state. Needs ffmpeg."
+    place = "FILE", "RUN/film.mp4; .gif: repeats"
+    parser = _of_one_run(commands, film, "write a film of a run's states", about, *place)
     rate = number(lambda rate: 0.1 <= rate <= 120, "from 0.1 to 120")
-    film.add_argument("--rate", metavar="FRAMES", type=rate, default=10.0, help="states a second (default: 10)")
-    film.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is viewed (default: z)")
-    film.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
+    parser.add_argument("--rate", metavar="FRAMES", type=rate, default=10.0, help="states a second (default: 10)")
+    parser.add_argument("--along", choices=tuple("xyz"), default="z", help="axis along which it is viewed (default: z)")
+    parser.add_argument("--colour", choices=COLOURINGS, default="aggregate", help="of the grains (default: aggregate)")
     width = number(lambda width: 160 <= width <= 3840 and width == int(width), "a whole number from 160 to 3840")
-    film.add_argument("--width", metavar="PIXELS", type=width, default=960, help="from 160 to 3840 (default: 960)")
-    film.set_defaults(command=write_film)
+    parser.add_argument("--width", metavar="PIXELS", type=width, default=960, help="from 160 to 3840 (default: 960)")
     _add_export(commands)
 
 
-def _of_one_run(commands, name, about, place, default):
+def _of_one_run(commands, command, short, about, place, default, type=Path, **more):
     """The parser of a command that writes something of one run."""
-    parser = commands.add_parser(name, help=about)
+    parser = add_command(commands, command, short, about, **more)
     parser.add_argument("run", metavar="RUN", help="run folder")
-    parser.add_argument("--out", metavar=place, help=f"where to (default: {default})")
+    parser.add_argument("--out", metavar=place, type=type, help=f"where to (default: {default})")
     return parser
 
 
-def draw_figures(options):
-    """Exit status: 0, or 2 when the run could not be read or the figures not be written."""
+def figures(options):
     from ..figures.draw import draw_all
     from ..progress import line_beside_bars
     from ..runs.folder import open_run
@@ -61,31 +53,32 @@ def draw_figures(options):
     return 0
 
 
-def write_view(options):
-    """Exit status: 0, or 2 when the run could not be read or the page not be written."""
+def view(options):
     from ..export.viewer import THREE, write_view
+    from ..runs.folder import open_run
 
-    if options.out and not options.out.endswith((".html", ".htm")):
-        complain(f"{options.out}: must end in .html")
-        return FAILED
-    return write_of_run(options, "view.html", lambda folder, file: write_view(folder, file, options.three or THREE))
+    folder = open_run(options.run)
+    print(printable(write_view(folder, options.out or folder.path / "view.html", options.three or THREE)))
+    return 0
 
 
-def write_film(options):
-    """Exit status: 0, or 2 when the run could not be read or the film not be written."""
+def film(options):
     from ..export.film import write_film
+    from ..runs.folder import open_run
 
-    how = options.rate, int(options.width), options.along, options.colour
-    return write_of_run(options, "film.mp4", lambda folder, file: write_film(folder, file, *how))
+    folder, how = open_run(options.run), (options.rate, int(options.width), options.along, options.colour)
+    print(printable(write_film(folder, options.out or folder.path / "film.mp4", *how)))
+    return 0
 
 
 def _add_plot(commands):
-    parser = commands.add_parser(
-        "plot",
-        help="draw a quantity of many runs against one of their parameters",
-        description="Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), "
-        "energy (where it went, by channel), or any column of analysis.table against another, with standard errors "
-        "over the pairs of aggregates; write a PNG and print its path.",
+    parser = add_command(
+        commands,
+        plot,
+        "draw a quantity of many runs against one of their parameters",
+        "Draw sticking (fraction of the decided runs that stick), largest (mass of the largest piece), energy (where "
+        "it went, by channel), or any column of analysis.table against another, with standard errors over the pairs "
+        "of aggregates; write a PNG and print its path.",
     )
     parser.add_argument("what", metavar="WHAT", help="sticking, largest, energy, or a column")
     parser.add_argument("runs", nargs="+", metavar="RUNS", help=RUNS)
@@ -95,8 +88,7 @@ def _add_plot(commands):
         "--where", metavar="COLUMN=VALUE", type=_condition, action="append", default=[], help="draw these runs only"
     )
     parser.add_argument("--log", choices=("x", "y", "xy", "none"), help="logarithmic axes (default: x over a decade)")
-    parser.add_argument("--out", metavar="FILE", help="the PNG (default: WHAT-COLUMN.png)")
-    parser.set_defaults(command=draw_plot)
+    parser.add_argument("--out", metavar="FILE", type=with_ending(".png"), help="the PNG (default: WHAT-COLUMN.png)")
 
 
 def _condition(text):
@@ -111,16 +103,12 @@ def _condition(text):
         return name, value
 
 
-def draw_plot(options):
-    """Exit status: 0, or 2 when a run could not be read or nothing be drawn."""
+def plot(options):
     from ..report.rows import frame, measure, row
     from ..runs.files import replacing
     from ..studies.plot import plot
 
-    file = Path(options.out or f"{options.what}-{options.x}.png")
-    if file.suffix != ".png":
-        complain(f"{file}: must end in .png")
-        return FAILED
+    file = options.out or Path(f"{options.what}-{options.x}.png")
     where, logarithmic = dict(options.where), "" if options.log == "none" else options.log
     structure = any("largest_" in name for name in (options.what, options.x, options.by, *where))
     measured, problems = measure(options.runs, lambda run: row(run, structure))
@@ -144,26 +132,18 @@ def _add_export(commands):
     for title, fields in (("grains (v is called velo in run.xyz)", GRAINS), ("contacts (VTK only)", CONTACTS)):
         about += f"\n{title}:"
         about += "".join(f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields)
-    text = "write a run's states for ParaView, OVITO and others"
-    parser = _of_one_run(commands, "export", text, "FOLDER", "RUN/export")
-    parser.description, parser.formatter_class = about, argparse.RawDescriptionHelpFormatter
-    parser.add_argument(
-        "--format",
-        choices=(*FORMATS, "all"),
-        default="vtk",
-        help="vtk (grains and contacts), xyz (grains in one file of text) or all; default: vtk",
-    )
-    parser.set_defaults(command=write_export)
+    text, form = "write a run's states for ParaView, OVITO and others", argparse.RawDescriptionHelpFormatter
+    parser = _of_one_run(commands, export, text, about, "FOLDER", "RUN/export", formatter_class=form)
+    of_format = "vtk (grains and contacts), xyz (grains in one file of text) or all; default: vtk"
+    parser.add_argument("--format", choices=(*FORMATS, "all"), default="vtk", help=of_format)
 
 
-def write_export(options):
-    """Exit status: 0, or 2 when the run could not be read or the files not be written."""
+def export(options):
     from ..export.formats import write_vtk, write_xyz
     from ..runs.folder import open_run
 
     writers = dict(zip(FORMATS, (write_vtk, write_xyz)))
     folder = open_run(options.run)
-    out = Path(options.out) if options.out else folder.path / "export"
     for name in FORMATS if options.format == "all" else (options.format,):
-        print(printable(writers[name](folder, out)), flush=True)
+        print(printable(writers[name](folder, options.out or folder.path / "export")), flush=True)
     return 0

@@ -8,7 +8,7 @@ to rebound as a whole.
 Of 104 collisions followed ten times as long as by default none became another outcome after it was decided.
 """
 
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
 
 import numpy as np
@@ -120,11 +120,19 @@ class Pieces:
         pairs, strength = self.state["contact_pairs"], contact_strength(self.state, self.constants)
         return loose_cuts(*self._motion, pairs, self.labels, self.state["aggregate"], strength)
 
+    def why_breaking(self, kind, counted, outcomes):
+        """Of an outcome that is another one without a loose side of one of some pieces; None if it is none yet.
+
+        outcomes: {number of a piece: function from the fraction of the counted mass that it loses to the outcome}."""
+        cut, side = self.loose_cuts()
+        for piece, outcome in outcomes.items():
+            lost = side[cut == piece].max(initial=0.0) / self.mass[counted].sum()
+            if outcome(0.0) == kind != outcome(lost):
+                return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
+
     def shares(self, counted):
-        """(shares (K,) of the counted mass, numbers of the two largest pieces, None for the second where there is
-        one)."""
-        shares = fragment_masses(self.labels, self.mass * counted) / self.mass[counted].sum()
-        return shares, *(*np.argsort(-shares, kind="stable")[:2], None)[:2]
+        """Shares (K,) of the counted mass."""
+        return fragment_masses(self.labels, self.mass * counted) / self.mass[counted].sum()
 
     def target(self, counted):
         """Fraction of the counted mass in the target."""
@@ -132,22 +140,21 @@ class Pieces:
 
 
 def _why_breaking(kind, pieces, counted):
-    """Of an outcome that is another one without a side of one of the largest pieces; None if the pieces are no such
-    outcome yet."""
-    shares, *largest = pieces.shares(counted)
-    largest = np.array([piece for piece in largest[: 2 if kind == BOUNCING else 1] if piece is not None])
-    cut, side, target = *pieces.loose_cuts(), pieces.target(counted)
-    for piece in largest:
-        lost = side[cut == piece].max(initial=0.0) / pieces.mass[counted].sum()
-        now, later = (sorted(shares[largest] - less * (largest == piece), reverse=True) for less in (0.0, lost))
-        now, later = (classify(*(masses + [0.0])[:2], target=target) for masses in (now, later))
-        if now == kind != later:
-            return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
+    """Of the largest piece, or of both that have bounced."""
+    shares, target = pieces.shares(counted), pieces.target(counted)
+    largest = np.argsort(-shares, kind="stable")[: 2 if kind == BOUNCING else 1]
+
+    def outcome(piece, lost):
+        masses = sorted(shares[largest] - lost * (largest == piece), reverse=True)
+        return classify(*(masses + [0.0])[:2], target=target)
+
+    return pieces.why_breaking(kind, counted, {piece: partial(outcome, piece) for piece in largest})
 
 
 def _why_meeting(kind, pieces, counted):
     """Of an outcome that is another one with the pieces that may still meet the largest or the second."""
-    shares, largest, second = pieces.shares(counted)
+    shares = pieces.shares(counted)
+    largest, second = (*np.argsort(-shares, kind="stable")[:2], None)[:2]
     near, other = pieces_that_can_meet(largest, *pieces.flight, EVER), 0.0
     whole = shares[largest] + shares[near].sum()
     if second is not None and not near[second]:

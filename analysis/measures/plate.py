@@ -109,7 +109,7 @@ def plate_outcome(start, end, met):
 def why_undecided_on_plate(kind, start, end, constants, touch, recent=()):
     """As decided.why_undecided, of a plate: states are mappings with the names of runs.format.STATE."""
     counted, pieces = _counted(start), Pieces(with_plate(end), constants)
-    shares, plate = pieces.shares(counted)[0], pieces.labels[-1]
+    shares, plate = pieces.shares(counted), pieces.labels[-1]
     near = _that_can_meet_it(plate, *pieces.flight)
     if kind == NEVER_MET:
         return "the aggregate may still meet the plate" if near.any() else None
@@ -137,17 +137,11 @@ def _that_can_meet_it(plate, position, velocity, radius, labels):
 
 
 def _why_breaking(kind, pieces, counted):
-    """Of an outcome that is another one without a side of what lies on the plate, or of the heaviest piece off it."""
-    shares, plate = pieces.shares(counted)[0], pieces.labels[-1]
-    off = np.where(np.arange(len(shares)) == plate, 0.0, shares)
-    cut, side = pieces.loose_cuts()
-    own = pieces.mass[counted].sum()
-    for piece in {plate, int(np.argmax(off))}:
-        lost = side[cut == piece].max(initial=0.0) / own
-        if piece == plate:
-            after = classify_on_plate(shares[plate] - lost, max(off.max(), lost))
-        else:
-            after = classify_on_plate(shares[plate], off.max() - lost)
-        if classify_on_plate(shares[plate], off.max()) == kind != after:
-            return f"parts of {lost:.0%} of the mass still move with more energy than the contacts to them hold"
-    return None
+    """Of what lies on the plate, or of the heaviest piece off it."""
+    shares, plate = pieces.shares(counted), pieces.labels[-1]
+    on, off = shares[plate], np.where(np.arange(len(shares)) == plate, 0.0, shares)
+    outcomes = {
+        int(np.argmax(off)): lambda lost: classify_on_plate(on, off.max() - lost),
+        int(plate): lambda lost: classify_on_plate(on - lost, max(off.max(), lost)),  # last: it may be the only piece
+    }
+    return pieces.why_breaking(kind, counted, outcomes)

@@ -4,8 +4,8 @@ import textwrap
 
 from ..runs.folder import WIDTH, settings
 from ..runs.format import CHANNEL_TABLE
-from ..runs.table import FOLDER, RUN
-from .rows import MEASURED, at_end, varied
+from ..runs.table import FOLDER, RUN, Column
+from .rows import MEASURED, at_end, final, varied
 
 # Columns of the line of a run.
 SHORT = (
@@ -35,6 +35,9 @@ def long_text(run, row):
     """Several lines (str) of a RunFolder and its row of a table(): parameters, what was measured, energies."""
     energies = [name for channel in CHANNEL_TABLE for name in (channel.name, at_end(channel.name))]
     measured = [column for column in MEASURED if column.name not in ("ended", "time", *energies)]
+    names = {column.name for column in measured}
+    own = (Column(final(series.name), series.unit, f"at the end: {series.meaning}") for series in run.kind.series)
+    measured += [column for column in own if column.name not in names]  # of a kind of a script's own
     known = [column for column in measured if row.get(column.name) is not None and row[column.name] == row[column.name]]
     state = "ended" if run.ended else "NOT ENDED: analysed as far as it went"
     lines = [f"run {run.path} ({state}, t = {row['time'] * 1e9:.4g} ns)"]

@@ -9,6 +9,8 @@ from running import PYTHON, TOP, call, read_arrays
 from written_runs import PAIR, PAIR_VELOCITY, change_arrays, seal
 
 from analysis.__main__ import main
+from analysis.figures.draw import figures_of
+from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS
 from analysis.theory import collide_pair
 
@@ -87,7 +89,7 @@ def test_figures_are_written_and_a_place_that_cannot_be_written_is_one_line(anal
     status, text, error = analyse("figures", cluster_folder, "--out", tmp_path / "new" / "place")
     assert status == 0 and error == ""
     names = [line.rsplit("/", 1)[1] for line in text.splitlines()]
-    assert sorted(names) == ["energy.png", "forces.png", "grains.png", "motion.png"]
+    assert names == [f"{name}.png" for name in figures_of(open_run(cluster_folder))] and len(names) > 3
     assert all((tmp_path / "new" / "place" / name).read_bytes().startswith(b"\x89PNG") for name in names)
     (tmp_path / "taken").write_text("")
     status, _, error = analyse("figures", cluster_folder, "--out", tmp_path / "taken")
