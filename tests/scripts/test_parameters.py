@@ -7,7 +7,7 @@ import time
 import pytest
 from refused import refused
 
-from yade_scripts import stability
+from yade_scripts import time_step
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
@@ -104,10 +104,10 @@ def test_wrong_parameters(given):
 
 def test_drag_and_dense_packings_lower_the_stable_step():
     """Below the steps at which runs blew up: see step_limit."""
-    assert stability.step_limit(ICE_PAIR, 0.3) == stability.step_limit(ICE_PAIR, 0.4) == 0.4
-    assert 0.3 < stability.step_limit(ICE_PAIR, 0.6) < 0.4
-    assert 0.25 < stability.step_limit(ICE_PAIR, 0.74) < 0.35
-    limits = [stability.step_limit(with_drag(t), 0.4) for t in (0, 1e-12, 3e-12, 6e-12, 1e-10)]
+    assert time_step.step_limit(ICE_PAIR, 0.3) == time_step.step_limit(ICE_PAIR, 0.4) == 0.4
+    assert 0.3 < time_step.step_limit(ICE_PAIR, 0.6) < 0.4
+    assert 0.25 < time_step.step_limit(ICE_PAIR, 0.74) < 0.35
+    limits = [time_step.step_limit(with_drag(t), 0.4) for t in (0, 1e-12, 3e-12, 6e-12, 1e-10)]
     assert limits == sorted(limits, reverse=True) and 0.1 < limits[3] < 0.25
     with pytest.raises(ParameterError, match="stepFraction = 0.3: unstable at this filling"):
         complete({"stepFraction": "0.3"}, with_drag(6e-12))

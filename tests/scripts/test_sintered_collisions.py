@@ -6,7 +6,7 @@ from running import completed, read_arrays, read_json, states
 
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
-from yade_scripts import stability
+from yade_scripts import time_step
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 
@@ -76,5 +76,5 @@ def test_bonds_lower_the_stable_step():
     """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any
     neck."""
     for neck, blew_up in ((0.2, 0.15), (0.5, 0.17), (0.7, 0.18)):
-        limit = stability.step_limit(pair_constants(KIND.parse({"neck": neck}), neck=neck), 0.4)
+        limit = time_step.step_limit(pair_constants(KIND.parse({"neck": neck}), neck=neck), 0.4)
         assert 0.1 < limit < 0.9 * blew_up

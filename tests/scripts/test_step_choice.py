@@ -7,8 +7,7 @@ from running import SCRIPTS, TINY, collide, messages, read_json, study
 from scipy.stats import binom
 
 from analysis import table
-from yade_scripts import stability
-from yade_scripts import step_choice as rule
+from yade_scripts import time_step
 from yade_scripts.experiments import collision, collision_step, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
@@ -27,7 +26,7 @@ def chosen(**given):
     parameters = kind.KIND.parse({**AUTO, **given})
     if kind is compression:
         constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
-        limit = stability.step_limit(constants, parameters.finalFilling or compression.FINAL_FILLING)
+        limit = time_step.step_limit(constants, parameters.finalFilling or compression.FINAL_FILLING)
     else:
         constants = {"bond": None, **pair_constants(parameters, neck=parameters.neck)}
         limit = collision_step.step_limit(parameters, constants)
@@ -36,7 +35,7 @@ def chosen(**given):
 
 
 def expected_error(parameters, constants):
-    of_kind = rule.compression_error if hasattr(parameters, "strainRate") else rule.collision_error
+    of_kind = time_step.compression_error if hasattr(parameters, "strainRate") else time_step.collision_error
     return of_kind(parameters, constants) * parameters.stepFraction**2
 
 

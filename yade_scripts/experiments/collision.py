@@ -14,7 +14,7 @@ from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
 from analysis.runs.measured import outcome_of_run
-from yade_scripts import packings, step_choice
+from yade_scripts import packings, time_step
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
@@ -145,7 +145,7 @@ def prepare(parameters, threads):
         duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)
         parameters = parameters.changed(duration=duration)
     aggregate_radius = parameters.radius * parameters.grainRadius
-    controls, reason = [], step_choice.reason(parameters, collision_step.step_limit(parameters, constants))
+    controls, reason = [], time_step.reason(parameters, collision_step.step_limit(parameters, constants))
     if parameters.impactStepFraction is not None:
         until = (touch or 0.0) + collision_step.duration_of_impact(parameters)
         controls.append(collision_step.control(parameters, until))
@@ -309,9 +309,9 @@ def estimate(parameters):
     touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
     duration = parameters.duration or default_duration(parameters, radius, time_unit, touch)
     try:
-        steps = duration / time_unit / collision_step.step(parameters, constants)
+        steps = duration / time_unit / collision_step.with_step(parameters, constants).stepFraction
     except ParameterError:  # the run ends with this line
-        steps = duration / time_unit / step_choice.SHORTEST
+        steps = duration / time_unit / time_step.SHORTEST
     if short := parameters.impactStepFraction:
         impact = min(touch + collision_step.duration_of_impact(parameters.changed(radius=radius)), duration)
         steps += impact / time_unit * (1 / short - 1 / parameters.stepFraction)

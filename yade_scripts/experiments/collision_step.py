@@ -1,4 +1,4 @@
-"""The time step of a collision: what a run needs of it, how stepFraction=auto is chosen, a shorter one at the impact.
+"""The time step of a collision: what a run needs of it, and a shorter one at the impact.
 
 Most of the error of a collision's ledger arises while aggregates fly through each other, when many contacts form and
 grains meet at the full velocity: of two BPCA of 50,000 grains at 50 m/s, 96 % in the first eighth of A22's time.
@@ -8,7 +8,7 @@ from math import ceil
 
 import numpy as np
 
-from yade_scripts import stability, step_choice
+from yade_scripts import time_step
 from yade_scripts.materials import pair_constants, require_small_contacts
 from yade_scripts.parameters import ParameterError
 
@@ -24,28 +24,20 @@ def complete(parameters, constants, threads):
     """
     require_small_contacts(constants)
     require_sintered(parameters.neck, constants)
-    limit = step_limit(parameters, constants)
-    parameters = parameters.changed(stepFraction=step(parameters, constants))
-    sintered = "neck, filling and drag" if parameters.neck else "filling and drag"
-    stability.require_stable(parameters.stepFraction, limit, sintered)
-    return parameters.with_threads(threads)
+    return with_step(parameters, constants).with_threads(threads)
 
 
-def step(parameters, constants):
-    """stepFraction [t0], chosen where it is auto; raises ParameterError."""
-    if parameters.stepFraction != stability.AUTO:
-        return parameters.stepFraction
-    measured = parameters
-    if parameters.target == "wall":  # half of a pair meets its image as an aggregate a plate
-        measured = parameters.changed(velocity=2 * parameters.velocity)
-    error = step_choice.collision_error(measured, constants)
-    return step_choice.longest_step(error, parameters, step_limit(parameters, constants))
+def with_step(parameters, constants):
+    """time_step.with_step() of a collision."""
+    error = lambda: time_step.collision_error(parameters, constants)
+    depends_on = "neck, filling and drag" if parameters.neck else "filling and drag"
+    return time_step.with_step(parameters, step_limit(parameters, constants), error, depends_on)
 
 
 def step_limit(parameters, constants):
     """Largest stable stepFraction [t0] of a collision of grains of one size."""
-    filling = stability.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
-    return stability.step_limit(constants, filling)
+    filling = time_step.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
+    return time_step.step_limit(constants, filling)
 
 
 def require_stable_with(parameters, pair):
@@ -55,8 +47,19 @@ def require_stable_with(parameters, pair):
     smallest, largest = float(radii.min()), float(radii.max())
     if smallest != largest:
         require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-        limit = stability.limit_of_unlike(parameters, (smallest, largest))
-        stability.require_stable(parameters.stepFraction, limit, "filling and drag, with grains of these sizes")
+        limit = limit_of_unlike(parameters, (smallest, largest))
+        time_step.require_stable(parameters.stepFraction, limit, "filling and drag, with grains of these sizes")
+
+
+def limit_of_unlike(parameters, radius_range):
+    """Largest stable stepFraction [t0 of two grains of grainRadius] of aggregates of grains of unlike size.
+
+    radius_range: (smallest, largest) [m]. The fastest vibration is that of the smallest grain among the largest ones:
+    its contacts are stiffer than among its own kind."""
+    stiffest = pair_constants(parameters, radius_range)
+    smallest = pair_constants(parameters, (radius_range[0], radius_range[0]))
+    stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=pair_constants(parameters)["timeUnit"])
+    return step_limit(parameters, stiffest)
 
 
 def require_sintered(neck, constants):
@@ -77,7 +80,7 @@ def require_usable(parameters):
     short, usual = parameters.impactStepFraction, parameters.stepFraction
     if short is None:
         return
-    if usual == stability.AUTO:
+    if usual == time_step.AUTO:
         given, must = f"stepFraction = {usual}", "be left out, or stepFraction be a number"
     elif parameters.engine != "fused":
         given, must = f"engine = {parameters.engine}", "be left out: their step stays the same"

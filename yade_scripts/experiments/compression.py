@@ -13,7 +13,7 @@ import numpy as np
 from analysis.measures.periodic_cell import AVERAGED, contact_pressure, filling_factor, kinetic_pressure
 from analysis.runs.format import COMPRESSION, value_text
 from analysis.theory.aggregates import bcca_coordination
-from yade_scripts import packings, stability, step_choice
+from yade_scripts import packings, time_step
 from yade_scripts.experiments.compression_end import (
     AXES,
     LOOSE,
@@ -155,17 +155,14 @@ def complete(parameters, constants, threads):
     constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
     """
     require_small_contacts(constants)
-    parameters = _with_final_filling(parameters, constants)
-    limit = stability.step_limit(constants, parameters.finalFilling)
-    parameters = parameters.changed(stepFraction=_step(parameters, constants, limit))
-    stability.require_stable(parameters.stepFraction, limit, "final filling and damping")
-    return parameters.with_threads(threads)
+    return with_step(_with_final_filling(parameters, constants), constants).with_threads(threads)
 
 
-def _step(parameters, constants, limit):
-    if parameters.stepFraction != stability.AUTO:
-        return parameters.stepFraction
-    return step_choice.longest_step(step_choice.compression_error(parameters, constants), parameters, limit)
+def with_step(parameters, constants):
+    """time_step.with_step() of a compression with a finalFilling."""
+    limit = time_step.step_limit(constants, parameters.finalFilling)
+    error = lambda: time_step.compression_error(parameters, constants)
+    return time_step.with_step(parameters, limit, error, "final filling and damping")
 
 
 def _with_final_filling(parameters, constants):
@@ -222,7 +219,7 @@ def prepare(parameters, threads):
         control=come_down if parameters.boundary == WALLS else end,
         ended_by=end.ended_by,
         interval=max(1, round(between / parameters.stepFraction)),
-        step_choice=step_choice.reason(parameters, stability.step_limit(constants, parameters.finalFilling)),
+        step_choice=time_step.reason(parameters, time_step.step_limit(constants, parameters.finalFilling)),
     )
 
 
@@ -339,9 +336,9 @@ def estimate(parameters):
     constants = pair_constants(parameters, linearDamping=parameters.linearDamping)
     try:
         ends = _with_final_filling(parameters, constants)
-        step = _step(ends, constants, stability.step_limit(constants, ends.finalFilling))
+        step = with_step(ends, constants).stepFraction
     except ParameterError:  # the run ends with this line
-        ends, step = parameters.changed(finalFilling=FINAL_FILLING, stretch="no"), step_choice.SHORTEST
+        ends, step = parameters.changed(finalFilling=FINAL_FILLING, stretch="no"), time_step.SHORTEST
     typical = DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
     first = min(ends.initialFilling or typical, 0.9 * ends.finalFilling)
     duration = parameters.duration or longest_duration(ends.changed(initialFilling=first), constants["timeUnit"])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from analysis.runs.format import value_text
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, between, one_of, parameter
 from yade_scripts.run import table
-from yade_scripts.stability import AUTO, STABLE_STEP
+from yade_scripts.time_step import AUTO, STABLE_STEP
 
 CORES = len(os.sched_getaffinity(0))
 TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default and range

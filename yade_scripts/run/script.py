@@ -19,7 +19,7 @@ from yade_scripts.run import checkpoint
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import Schedule
 from yade_scripts.run.parameters import gather
-from yade_scripts.stability import AUTO, require_countable
+from yade_scripts.time_step import AUTO, require_countable
 
 
 def main(kind, description):

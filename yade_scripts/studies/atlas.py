@@ -34,7 +34,7 @@ from analysis.atlas.variables import CHOSEN, breaking_velocity
 from analysis.measures.periodic_cell import filling_factor
 from analysis.progress import progress
 from analysis.theory import ICE, SILICATE
-from yade_scripts import packings, step_choice
+from yade_scripts import packings, time_step
 from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import equilibrium_overlap, pair_constants
 from yade_scripts.packings.aggregate import AggregateParameters, make
@@ -178,8 +178,8 @@ def step(scene):
     given = {**packing, "grains": scene.grains[0], "velocity": scene.velocity, "material": scene.material}
     given |= {"grainRadius": GRAIN_RADIUS, "tolerance": TOLERANCE, "stepFraction": "auto"}
     alike = _parsed(CollisionParameters, given)
-    energies = step_choice.energies_of(pair_constants(alike), scene.grains, scene.velocity)
-    error = step_choice.scene_factor(alike) * step_choice.ledger_error(*energies)
+    energies = time_step.energies_of(pair_constants(alike), scene.grains, scene.velocity)
+    error = time_step.scene_factor(alike) * time_step.ledger_error(*energies)
     return min(LONGEST, float(f"{(TOLERANCE / error) ** 0.5:.2g}"))
 
 

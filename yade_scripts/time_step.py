@@ -1,0 +1,247 @@
+"""The time step of a run: the longest that is stable, and the longest for a tolerance (stepFraction=auto).
+
+Steps are in units of t0 (Kataoka et al. 2013, K13, eq 2; `timeUnit`). constants: {name: value} of a contact of two
+grains, as the plugin's pairConstants or materials.pair_constants give them, with the constants of a bond under "bond"
+where grains are sintered."""
+
+import math
+
+from yade_scripts.packings.aggregate import EQUAL
+from yade_scripts.packings.lattice import maximum_filling
+from yade_scripts.parameters import ParameterError
+
+AUTO = "auto"
+# The leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag
+# (measured).
+STABLE_STEP = 0.4
+SAFETY = STABLE_STEP / 0.5
+# An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.
+MOST_STEPS = 1e9
+SHORTEST = 0.01  # t0, of steps that are chosen: below, rather another tolerance
+
+
+def with_step(parameters, limit, error, depends_on):
+    """The parameters with their stepFraction, chosen where it is auto.
+
+    Parameters
+    ----------
+    parameters : run.parameters.RunParameters
+    limit : float
+        Of stability [t0].
+    error : callable
+        Without arguments: the ledger's error over the square of the step.
+    depends_on : str
+        What sets the limit.
+
+    Raises
+    ------
+    ParameterError
+        For a step that is unstable, or for auto in a run that was not measured, or with a tolerance that takes steps
+        shorter than SHORTEST.
+    """
+    if parameters.stepFraction == AUTO:
+        return parameters.changed(stepFraction=longest_step(error(), parameters.tolerance, limit))
+    require_stable(parameters.stepFraction, limit, depends_on)
+    return parameters
+
+
+def reason(parameters, limit):
+    """Why parameters.stepFraction is what it is, in one line."""
+    step, most = parameters.stepFraction, parameters.tolerance
+    if most is None:
+        return "as given"
+    why = "the limit of stability" if step == limit else f"below the limit of stability, {limit:.3g} t0"
+    return f"{step:.3g} t0 for a ledger error of at most {most:g} in 95 % of runs ({why})"
+
+
+def require_countable(duration, time_step):
+    """Raise ParameterError when a run [s] would take more than MOST_STEPS steps [s]."""
+    if duration > MOST_STEPS * time_step:
+        raise ParameterError(
+            f"duration = {duration:.6g}: must be at most {MOST_STEPS:g} steps, {MOST_STEPS * time_step:.3g} s"
+        )
+
+
+# ---- stability (contact_law/MODEL.md, "What packings allow") ----
+
+
+def require_stable(step, limit, depends_on):
+    """Raise ParameterError when a stepFraction is above its limit; depends_on: words for what sets that."""
+    if step > limit:
+        raise ParameterError(
+            f"stepFraction = {step:g}: unstable at this {depends_on}; must be at most {limit:.3g} [t0]"
+        )
+
+
+def step_limit(constants, filling):
+    """Largest stable stepFraction [t0] of a CPE packing of that filling, or one as stiff against turning
+    (equivalent_filling): SAFETY times the step at which the first of two vibrations grows, of contacts or of bonds:
+    all grains turning in phase, or one moving against its neighbours."""
+    mass, contact_radius = 2 * constants["reducedMass"], constants["equilibriumContactRadius"]
+    normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # Arakawa et al. (2024), eq 38
+    sliding_stiffness = constants["slidingStiffness"]
+    lattice = maximum_filling(2 * constants["reducedRadius"], constants["equilibriumOverlap"])
+    occupied = min(1.0, filling / lattice)
+    turning = 2 / math.sqrt(40 * occupied * sliding_stiffness / mass)
+    drag = 4 * 8 * (constants["dragPerContactRadius"] * contact_radius + constants["linearDrag"]) / mass
+    stiffness = 8 * (normal_stiffness + sliding_stiffness) / mass
+    moving = 8 / (drag + math.sqrt(drag**2 + 16 * stiffness))
+    steps = [turning, moving]
+    if constants.get("bond"):
+        turning_bonds = 2 / math.sqrt(40 * occupied * constants["bond"]["slidingStiffness"] / mass)
+        steps += [turning_bonds, bond_step(constants) * constants["timeUnit"]]
+    return min(STABLE_STEP, SAFETY * min(steps) / constants["timeUnit"])
+
+
+def bond_step(constants):
+    """Step [t0] at which a grain vibrates unstably against eight bonded neighbours."""
+    bond, mass = constants["bond"], 2 * constants["reducedMass"]
+    stiffness = 8 * (bond["normalStiffness"] + bond["slidingStiffness"]) / mass
+    return 2 / math.sqrt(stiffness) / constants["timeUnit"]
+
+
+def equivalent_filling(packing, filling, planar, constants):
+    """Filling factor of the CPE packing in space whose grains meet as much resistance when all turn in phase.
+
+    packing, filling, planar: of a collision. Of 12 contacts of a site in space two thirds resist, of 6 in a plane all
+    (a fraction of 3/4); of a BCCA or BPCA aggregate four are taken (1/2), which is more than most grains have; a
+    packing from a file may be as dense as the lattice."""
+    radius, overlap = 2 * constants["reducedRadius"], constants["equilibriumOverlap"]
+    full = maximum_filling(radius, overlap)
+    if packing in ("bcca", "bpca"):
+        return 0.5 * full
+    if packing == "file":
+        return full
+    if planar:
+        return 0.75 * full * filling / maximum_filling(radius, overlap, planar=True)
+    return filling
+
+
+# ---- errors of the energy ledger ----
+#
+# The ledger closes with second order in the step s, in every kind of run that was measured. So the error is a sum of
+# causes, each a number times s^2, and the longest step follows. What each causes, of the largest |E(t) - E(0)|/K(0) of
+# a collision (e = F_c delta_c, the scale of a contact's energy; K(0): of all grains together in their centre of mass;
+# N: their number):
+#
+# - Contacts that form or break, or begin to slip, within a step. Each leaves an error of the order e s^2, and their
+#   number grows with the energy that there is for them, as 1 + x with x = K(0)/e. Of random sign they would leave
+#   s^2 (1 + x)^(1/2)/x of K(0), of one sign s^2 (1 + x)/x; measured is a power in between:
+#   EVENTS s^2 (1 + 1/x)^(1/2) x^-DECAY.
+# - The curvature of the normal force along the way that grains make in a step: SPEED s^2 k/(1 + k)^(4/5), where
+#   k = K(0)/(N e) is the relative velocity squared over 8 e/m. For small k this goes with the square of the overlap
+#   travelled in a step; for large k a contact lasts as long as Hertz's, ~ v^(-1/5).
+# - Sintered bonds that break, events of the energy b = pi a^2 gamma of a bond (Sirono & Ueno 2017, eq 6) and of its
+#   frequency: BREAKING (s/s_b)^2 (1 + 1/x_b)^(1/2) x_b^-DECAY, x_b = K(0)/b, s_b the step at which bonds become
+#   unstable. Few break where the grains' energy is far below a bond's: times k_b^2/(k_b^2 + FEW^2), k_b = K(0)/(N b).
+#   In BCCA and BPCA aggregates, of two bonds a grain, BREAKING_FLUFFY takes the place of BREAKING.
+#
+# The first two are those of CPE aggregates in space. In a plane, and for BCCA and BPCA aggregates, which have fewer
+# contacts to share an impact, they are FLUFFY times as large; where springs are cut at their limits (limit = cut), each
+# cut an event more, CUT times. An aggregate that meets a plate counts as one of a pair at twice its velocity, PLATE
+# times: a contact with a plate (R* = r, not r/2) has 2^(4/3) the energy and 2^(7/6) the time of one of two grains.
+#
+# In a compression nothing has a speed of its own. What counts is the error over the work of the boundaries until the
+# end: FINAL s^2 exp(-DENSER phi), phi the filling at the end; grains that nothing damps vibrate on: UNDAMPED times. The
+# work goes with the rolling energy: where that is less than ice's of K13, which is ROLLING_OF_ICE e, errors are larger
+# by the ratio to the power of 2/3. Dense silicate and springs that are cut leave much larger errors: refused.
+#
+# The constants are such that 95 % of runs stay below the sum: fitted to the 98 % level of grids of runs and judged by
+# runs drawn at random (docs/measurements.md). The typical error is a quarter of it. Drag leaves somewhat smaller errors
+# and is left out, but where it limits the step.
+
+EVENTS, DECAY, SPEED = 0.056, 0.36, 0.0101
+FLUFFY, CUT, PLATE = 3.0, 6.0, 1.6
+BREAKING, BREAKING_FLUFFY, FEW = 0.12, 0.037, 0.15
+FINAL, DENSER, UNDAMPED = 0.05, 7.75, 3.0
+DAMPED = 0.01  # the least linearDamping that was measured to be as good as more
+FILLINGS, LEAST_GRAINS, ROLLINGS = (0.1, 0.5), 64, (2.5, 60.0)  # of compressions that were measured
+ROLLING_OF_ICE = 12.0  # F_c delta_c
+
+
+def longest_step(error, tolerance, limit):
+    """The longest step [t0] that keeps to a tolerance, rounded down to two digits, at most limit [t0].
+
+    error: of the ledger, over the square of the step. Raises ParameterError for a step shorter than SHORTEST."""
+    step = math.sqrt(tolerance / error)
+    if step < SHORTEST:
+        raise ParameterError(
+            f"tolerance = {tolerance:g}: would take a step of {step:.2g} t0; must be at least "
+            f"{1.06 * error * SHORTEST**2:.2g} in this scene, for {SHORTEST:g} t0, or stepFraction a number"
+        )
+    unit = 10.0 ** (math.floor(math.log10(step)) - 1)
+    return min(limit, float(f"{math.floor(round(step / unit, 9)) * unit:.2g}"))
+
+
+def _require_measured(*unmeasured):
+    """Raise ParameterError for a run that was not measured; (whether it is such a run, what that is), ..."""
+    for wrong, what in unmeasured:
+        if wrong:
+            raise ParameterError(f"stepFraction = {AUTO}: not measured with {what}; must be a number [t0] here")
+
+
+def collision_error(parameters, constants):
+    """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level. Raises ParameterError for a
+    collision of a kind that was not measured."""
+    sliding, velocity = parameters.slidingStiffnessFactor, parameters.velocity
+    _require_measured(
+        (parameters.packing == "file", "packing = file"),
+        (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
+        (parameters.sizes != EQUAL, f"sizes = {parameters.sizes}"),
+        (parameters.initialOverlap != 1, f"initialOverlap = {parameters.initialOverlap:g}"),
+    )
+    if parameters.target == "wall":  # half of a pair meets its image as an aggregate a plate
+        velocity *= 2
+    kinetic, of_grain = energies_of(constants, (parameters.grains, parameters.of_projectile().grains), velocity)
+    error = scene_factor(parameters) * ledger_error(kinetic, of_grain)
+    if bond := constants.get("bond"):
+        of_bond = bond["breakingEnergy"] / (constants["pullOffForce"] * constants["pullOffOverlap"])
+        breaking = BREAKING if parameters.packing == "cpe" else BREAKING_FLUFFY
+        kinetic, of_grain = kinetic / of_bond, of_grain / of_bond
+        of_bonds = breaking * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY * of_grain**2 / (of_grain**2 + FEW**2)
+        error += of_bonds / bond_step(constants) ** 2
+    return error
+
+
+def energies_of(constants, grains, velocity):
+    """(K(0), the same for a grain) of a pair of so many grains (target, projectile), both over F_c delta_c."""
+    contact = constants["pullOffForce"] * constants["pullOffOverlap"]
+    target, projectile = grains
+    reduced = 2 * constants["reducedMass"] * target * projectile / (target + projectile)  # a grain's mass is 2 m*
+    kinetic = reduced * velocity**2 / 2 / contact
+    return kinetic, kinetic / (target + projectile)
+
+
+def scene_factor(parameters):
+    """Errors over those of CPE aggregates in space whose springs are held at their limits."""
+    plate = PLATE if parameters.target == "wall" else 1.0
+    if parameters.limit == "cut":
+        return CUT * plate
+    return (FLUFFY if parameters.planar or parameters.packing != "cpe" else 1.0) * plate
+
+
+def ledger_error(kinetic, of_grain):
+    """Error [K(0)] over the square of the step [t0], of CPE aggregates in space; energies of energies_of()."""
+    return EVENTS * (1 + 1 / kinetic) ** 0.5 * kinetic**-DECAY + SPEED * of_grain / (1 + of_grain) ** 0.8
+
+
+def compression_error(parameters, constants):
+    """Error of a compression's ledger [work of the boundaries] over the square of the step [t0], 95 % level. Raises
+    ParameterError for a compression of a kind that was not measured."""
+    # E_roll = 6 pi^2 gamma R xi_crit (K13 eq 1) over F_c delta_c; F_c = 3 pi gamma R/2
+    rolling = 4 * math.pi * constants["criticalRolling"] / constants["pullOffOverlap"]
+    final, sliding = parameters.finalFilling, parameters.slidingStiffnessFactor
+    range_of_rolling = f"only {ROLLINGS[0]:g} to {ROLLINGS[1]:g} (not ice, or another criticalRolling)"
+    _require_measured(
+        (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
+        (parameters.finalPressure is not None, "finalPressure, which may end a run at any filling"),
+        (not FILLINGS[0] <= final <= FILLINGS[1], f"finalFilling = {final:.3g}, only {FILLINGS[0]} to {FILLINGS[1]}"),
+        (parameters.grains < LEAST_GRAINS, f"fewer than {LEAST_GRAINS} grains"),
+        (parameters.limit == "cut", "limit = cut in a compression"),
+        (
+            not ROLLINGS[0] <= rolling <= ROLLINGS[1],
+            f"a rolling energy of {rolling:.3g} F_c delta_c, {range_of_rolling}",
+        ),
+    )
+    damped = 1.0 if parameters.linearDamping >= DAMPED else UNDAMPED
+    return FINAL * math.exp(-DENSER * final) * damped * max(1.0, ROLLING_OF_ICE / rolling) ** (2 / 3)
