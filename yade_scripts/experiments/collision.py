@@ -37,6 +37,9 @@ AXIS = 0  # across a plate
 WAY = 4  # radii of the larger aggregate that fluffy ones move at `velocity` in the default duration
 # At 3e3 m/s BCCA aggregates of ice broke down with the default step, at 2e3 they did not.
 VELOCITY = Usual(1e-6, 1e3, "thermal motion of aggregates to a third of sound in ice")
+NECK = Check(
+    f"0, or above that of a contact (ice: 0.1237) and at most {LARGEST_NECK}", lambda x: 0 <= x <= LARGEST_NECK
+)
 CHECKS = 100  # times in a run that it is looked whether pieces are apart
 NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
@@ -47,9 +50,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
     velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s", usual=VELOCITY)
     target: str = parameter(
-        AGGREGATE,
-        one_of([AGGREGATE, WALL]),
-        "what one aggregate meets: another one, or a plate of the grains' material at rest, at right angles",
+        AGGREGATE, one_of([AGGREGATE, WALL]), "what meets one: another, or a plate of its material, at right angles"
     )
     impact: float = parameter(
         0.0,
@@ -61,17 +62,10 @@ class CollisionParameters(AggregateParameters, RunParameters):
         None, between(2, MOST_GRAINS), "grains of the projectile, with packing = bcca or bpca (as many as grains)"
     )
     projectileFile: str | None = parameter(
-        None,
-        NAMED_PACKING,
-        "the projectile's packing (file: the same grains, not turned, so that each meets its own image)",
+        None, NAMED_PACKING, "the projectile's packing (file: the same, not turned: each grain meets its own image)"
     )
     neck: float = parameter(
-        0.0,
-        Check(
-            f"0, or above that of a contact (ice: 0.1237) and at most {LARGEST_NECK}", lambda x: 0 <= x <= LARGEST_NECK
-        ),
-        "neck radius over grain radius of the sintered bonds that the aggregates start with; 0: no bonds (S17)",
-        "1",
+        0.0, NECK, "neck radius over grain radius of the bonds that aggregates start with; 0: no bonds (S17)", "1"
     )
     duration: float | None = parameter(
         None,
@@ -81,11 +75,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
         "s",
     )
     impactStepFraction: float | None = parameter(
-        None,
-        POSITIVE,
-        "shorter time step until the aggregates have flown through each other: from the start to the time of the "
-        "first touch and of four radii of the larger one (stepFraction all the time)",
-        "t0",
+        None, POSITIVE, "shorter step until the aggregates have flown through each other, four radii after touch", "t0"
     )
     endWhenApart: int | None = parameter(
         None,

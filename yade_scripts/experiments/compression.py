@@ -37,12 +37,15 @@ FINAL_FILLING = 0.5
 SMALLEST_EDGE = 5.7  # grain radii: below, a grain could meet two images of another (the engine stops at 5.6)
 BETWEEN_SAMPLES = 40.0  # t0; a sample takes as long as 20 steps
 FINEST_FILLING = 0.005  # by this fraction the filling factor grows between samples, at most
-STATES = 60
 FASTEST = 1e-3  # 1/t0: beyond, boundaries pass a grain within a few oscillations of a contact
 EXTENT, EXTENT_EXPONENT = 2.45, 0.55  # edge of the first cell, in grain radii, against the number of grains: a fit
 PERIODIC, WALLS = "periodic", "walls"
 PACKING = {PERIODIC: "bcca", WALLS: "rbd"}
 DEPOSITED = 0.15  # filling of a deep layer, which sets the square on which it is grown
+FINAL = Check(
+    f"> initialFilling and at most that of random close packing (about {CLOSE_PACKED:g})", lambda x: 0 < x < 1
+)
+RATE = Check(f"> 0 and <= {FASTEST:g}", lambda x: 0 < x <= FASTEST)
 GAP = 0.1  # grain radii between the highest grain and the upper plate at the start
 UP = 2  # axis across the plates
 
@@ -66,26 +69,18 @@ class CompressionParameters(GrainParameters, RunParameters):
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
     strainRate: float = parameter(
-        3e-7,
-        Check(f"> 0 and <= {FASTEST:g}", lambda x: 0 < x <= FASTEST),
-        "C_v: the edges, or the distance of the walls, follow L = L0 exp(-2 C_v t/t0) (K13 eq 7)",
-        "1/t0",
+        3e-7, RATE, "C_v: the edges, or the distance of the walls, follow L = L0 exp(-2 C_v t/t0) (K13 eq 7)", "1/t0"
     )
     linearDamping: float = parameter(0.01, NOT_NEGATIVE, "k_n of the damping of the normal motion (K13 eq 4)", "1")
     initialFilling: float | None = parameter(
         None,
         Check("> 0, and such that the cluster does not touch its images", lambda x: x > 0),
-        "volume filling factor of the cell at the start (its edge is the cluster's extent in x, y or z; between walls "
-        "that of the layer, where it cannot be given)",
+        "volume filling factor of the cell at the start (its edge is the cluster's extent in x, y or z; not between "
+        "walls, where it is the layer's)",
         "1",
     )
     finalFilling: float | None = parameter(
-        None,
-        Check(
-            f"> initialFilling and at most that of random close packing (about {CLOSE_PACKED:g})", lambda x: 0 < x < 1
-        ),
-        f"filling factor at which the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)",
-        "1",
+        None, FINAL, f"where the compression ends ({FINAL_FILLING:g}; with finalPressure the largest there is)", "1"
     )
     finalPressure: float | None = parameter(
         None,
@@ -94,22 +89,17 @@ class CompressionParameters(GrainParameters, RunParameters):
         f"{AVERAGED:g} t0",
         "Pa",
     )
-    stretch: str = parameter(
-        "no", one_of(list(AXES)), "whether and along which axes the cell is stretched afterwards, at the same rate"
-    )
+    stretch: str = parameter("no", one_of(list(AXES)), "axes along which the cell is stretched afterwards, as fast")
     stretchFilling: float | None = parameter(
         None,
         Check("> 0 and below finalFilling", lambda x: x > 0),
-        f"filling factor at which the stretching ends ({LOOSE:g} of that at which it begins); a cell that is looser at "
-        "finalPressure is not stretched",
+        f"where the stretching ends ({LOOSE:g} of where it begins); a cell looser at finalPressure is not stretched",
         "1",
     )
     states: int = parameter(
-        STATES, between(2, 10_000), "states written, evenly in time, start and end among them", of_consequence=False
+        60, between(2, 10_000), "states written, evenly in time, start and end among them", of_consequence=False
     )
-    duration: float | None = parameter(
-        None, POSITIVE, "time that is simulated if the run does not end earlier (as long as that takes)", "s"
-    )
+    duration: float | None = parameter(None, POSITIVE, "longest time that is simulated (as long as it takes)", "s")
 
     ONLY_WITH = [
         ("stretchFilling", "stretch", ["x", "xyz"]),

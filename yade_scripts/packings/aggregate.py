@@ -18,6 +18,7 @@ MADE = ("cpe", *MOST_GROWN)
 EQUAL, TWO, LOGNORMAL = SIZES = ("equal", "two", "lognormal")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
 NAMED_PACKING = Check("a packing that make_packing.py wrote", lambda text: text != "")
+UP_TO_ONE = Check("> 0 and at most 1", lambda x: 0 < x <= 1)
 WIDEST = 2.5  # standard deviations of ln r at which a log-normal distribution is cut off on both sides
 
 
@@ -37,39 +38,24 @@ class AggregateParameters(GrainParameters):
         "from the centre to that of the farthest grain (largest_filling_factor of tables: R = (5/3)^(1/2) R_g)",
         "1",
     )
-    radius: float | None = parameter(
-        None, POSITIVE, "radius of a cpe aggregate (20 if grains is not given either)", "grain radii"
-    )
+    radius: float | None = parameter(None, POSITIVE, "radius of a cpe aggregate (20, without grains)", "grain radii")
     grains: int | None = parameter(
         None, between(2, MOST_GRAINS), f"grains of an aggregate, instead of radius (bcca, bpca: {GRAINS_GROWN})"
     )
     planar: int = parameter(0, SWITCH, "1: grains confined to a plane")
     file: str | None = parameter(None, NAMED_PACKING, "packing of packing = file")
-    sizes: str = parameter(
-        EQUAL,
-        one_of(SIZES),
-        "radii of the grains of a bcca or bpca aggregate: all of grainRadius, two radii, log-normal",
-    )
-    sizeRatio: float | None = parameter(
-        None, between(0.1, 10.0), "sizes = two: radius of the others over grainRadius", "1"
-    )
-    sizeFraction: float | None = parameter(
-        None, between(0.0, 1.0), "sizes = two: how many of the grains are the others (0.5)", "1"
-    )
+    sizes: str = parameter(EQUAL, one_of(SIZES), "radii of grains of bcca and bpca: all grainRadius, two, log-normal")
+    sizeRatio: float | None = parameter(None, between(0.1, 10.0), "sizes = two: radius of the others/grainRadius", "1")
+    sizeFraction: float | None = parameter(None, between(0.0, 1.0), "sizes = two: fraction of the others (0.5)", "1")
     sizeSpread: float | None = parameter(
         None,
         Check("> 0 and at most 0.7", lambda x: 0 < x <= 0.7),
         f"sizes = lognormal: standard deviation of ln r around ln grainRadius, cut off at {WIDEST:g} of it",
         "1",
     )
-    removeLooseGrains: int = parameter(
-        0, SWITCH, "1: grains of a cpe aggregate outside its largest connected piece are left out"
-    )
+    removeLooseGrains: int = parameter(0, SWITCH, "1: of a cpe aggregate only the largest connected piece is kept")
     initialOverlap: float = parameter(
-        1.0,
-        Check("> 0 and at most 1", lambda x: 0 < x <= 1),
-        "overlap of touching grains of a cpe aggregate at the start; below 1 they pull",
-        "of that at rest",
+        1.0, UP_TO_ONE, "of grains of a cpe aggregate at the start; below 1 they pull", "of that at rest"
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
 

@@ -57,23 +57,19 @@ class Checkpoint:
             ) from None
 
     def require_agreement(self, difference, made_with):
-        """Raise InputError unless it was written by this software, and is of the run that is wanted.
+        """Raise InputError unless it is of the run that is wanted, and written by this software: the layout of what
+        YADE saves belongs to one build.
 
         difference: of its run from the wanted one (difference()), or None; made_with: as script.made_with() gives it.
-        The layout of what YADE saves belongs to one build."""
-        written, present = (
-            {**made["versions"], "the plugin of commit": made["commit"]} for made in (self.run, made_with)
-        )
-        reasons = [
-            f"written by {name} {written[name]}, not {present[name]}"
-            for name in ("yade", "contact_law", "the plugin of commit")
-            if written[name] != present[name]
-        ]
+        """
+        names = ("yade", "contact_law", "the plugin of commit")
+        written, present = ({**made["versions"], names[2]: made["commit"]} for made in (self.run, made_with))
+        differing = [name for name in names if written[name] != present[name]]
+        reasons = [f"written by {name} {written[name]}, not {present[name]}" for name in differing]
         reasons += [f"of a run with {difference}"] if difference else []
         if reasons:
             raise InputError(
-                f"{self.run_folder}/{CHECKPOINT_FOLDER}: {reasons[0]}; must be the same, or removed to start the run "
-                "again"
+                f"{self.run_folder}/{CHECKPOINT_FOLDER}: {reasons[0]}; must be the same, or removed to start again"
             )
 
     def require_time_left(self, duration, ended):
@@ -154,16 +150,9 @@ def difference(kind, wanted, run, but=()):
 
     A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run that was
     continued has a longer duration than is wanted, and is what is wanted all the same. A step that is still to be
-    chosen is that of any run that chose it for the same tolerance; a number is compared as such, whether or not it
-    was chosen.
+    chosen is that of any run that chose it for the same tolerance; a number is compared as such.
 
-    Parameters
-    ----------
-    kind : run.kind.Kind
-    wanted : parameters of that kind
-    run : dict
-        As in run.json, with 'parameters' and 'derived'.
-    but : names that are not compared
+    kind: run.kind.Kind; wanted: parameters of that kind; run: as in run.json; but: names that are not compared.
     """
     there = run.get("kind", "collision")  # format 1 had collisions only
     if there != kind.name:
@@ -198,21 +187,12 @@ def continued(kind, texts):
         if name in columns and (name in OWN or columns[name].of_consequence and name != "duration"):
             raise ParameterError(f"{name}: given with {CONTINUE} = {folder}, whose own it is; must be left out")
     found = kind.parameters.parse(given)  # only for its checks
-    held = _held(kind, folder)
-    if held["threads"]:
-        held["threads"] = min(held["threads"], CORES)  # of another machine
-    held |= {name: getattr(found, name) for name in given}
-    return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})
-
-
-def _held(kind, folder):
-    """The parameters in a folder's run.json, of this kind."""
     try:
         run = read_json(os.path.join(folder, RUN_FILE))
         held = run["parameters"]
     except (RunFolderError, KeyError, TypeError) as error:
         raise ParameterError(f"{CONTINUE} = {folder}: {error}; must be the folder of a run") from None
-    if run.get("kind") != kind.name or set(held) != set(kind.parameters.columns()):
+    if run.get("kind") != kind.name or set(held) != set(columns):
         raise ParameterError(
             f"{CONTINUE} = {folder}: a run of another kind or version; must be a {kind.name} of this version"
         )
@@ -220,7 +200,9 @@ def _held(kind, folder):
         raise ParameterError(
             f"{CONTINUE} = {folder}: the run has ended, decided; must be one that was stopped, or is undecided"
         )
-    return held
+    threads = held["threads"] and min(held["threads"], CORES)  # of another machine
+    held |= {"threads": threads, **{name: getattr(found, name) for name in given}}
+    return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})
 
 
 def command(folder, **changed):

@@ -11,7 +11,11 @@ from yade_scripts.run import table
 from yade_scripts.time_step import AUTO, STABLE_STEP
 
 CORES = len(os.sched_getaffinity(0))
-TOLERANCE, TOLERANCES = 1e-4, (1e-7, 1e-2)  # with stepFraction=auto: default and range
+TOLERANCE = 1e-4  # with stepFraction=auto
+STEP = Check(
+    f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}", lambda x: 0 < x <= STABLE_STEP
+)
+FOLDER = Check("a folder that can be written", lambda text: text != "")
 LONGEST = 200  # bytes of a file's name; Linux has 255, and temporary files and logs add to it
 
 
@@ -19,25 +23,15 @@ LONGEST = 200  # bytes of a file's name; Linux has 255, and temporary files and 
 class RunParameters(Parameters):
     """The run."""
 
-    stepFraction: float | str = parameter(
-        0.1,
-        Check(
-            f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}", lambda x: 0 < x <= STABLE_STEP
-        ),
-        f"time step; {AUTO}: the longest that keeps to tolerance",
-        "t0",
-        word=AUTO,
-    )
+    stepFraction: float | str = parameter(0.1, STEP, "time step; auto: the longest for tolerance", "t0", word=AUTO)
     tolerance: float | None = parameter(
         None,
-        between(*TOLERANCES),
-        f"largest error of the energy ledger over K(0), or over the boundaries' work in a compression; with "
-        f"stepFraction={AUTO} only ({TOLERANCE:g})",
+        between(1e-7, 1e-2),
+        "with stepFraction=auto: largest error of the energy ledger over K(0), or over the boundaries' work in a "
+        f"compression ({TOLERANCE:g})",
         "1",
     )
-    engine: str = parameter(
-        "fused", one_of(["fused", "functors"]), "JKRWadaEngine, or YADE's own loop (the reference, much slower)"
-    )
+    engine: str = parameter("fused", one_of(["fused", "functors"]), "JKRWadaEngine, or YADE's own loop (much slower)")
     limit: str = parameter(
         "held",
         one_of(["held", "cut"]),
@@ -49,25 +43,18 @@ class RunParameters(Parameters):
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),
-        "of the fused engine, at most the machine's cores (those that yade -j or yade-batch set); more than 2 are of "
-        "use from 24,000 grains on, more than 4 from 48,000 and so on; the functors have those of YADE",
+        "of the fused engine, at most the machine's cores (as many as YADE has); more than 2 are of use from 24,000 "
+        "grains on, more than 4 from 48,000 and so on; the functors have those of YADE",
         of_consequence=False,
     )
     states: int = parameter(
         22, between(2, 10_000), "states written, evenly in time, start and end among them", of_consequence=False
     )
     out: str | None = parameter(
-        None,
-        Check("a folder that can be written", lambda text: text != ""),
-        "run folder (runs/<description of the row, or a name made from the parameters>)",
-        of_consequence=False,
+        None, FOLDER, "run folder (runs/ and the row's description, or the parameters)", of_consequence=False
     )
-    overwrite: int = parameter(
-        0, SWITCH, "1: replace a run that has ended, or was stopped (its checkpoint goes)", of_consequence=False
-    )
-    resume: int = parameter(
-        0, SWITCH, "1: resume from the run folder's checkpoint, if there is one", of_consequence=False
-    )
+    overwrite: int = parameter(0, SWITCH, "1: replace a run that has ended or was stopped", of_consequence=False)
+    resume: int = parameter(0, SWITCH, "1: resume from the folder's checkpoint, if it has one", of_consequence=False)
     checkpointInterval: float = parameter(300.0, POSITIVE, "wall time between checkpoints", "s", of_consequence=False)
 
     @classmethod
