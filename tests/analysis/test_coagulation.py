@@ -195,21 +195,6 @@ def test_probabilities_are_those_of_the_table_at_each_radius_s_filling(sim):
     assert (frag + stick).max() <= 1
 
 
-@pytest.mark.parametrize("inside", [0.0, 1.0])
-def test_outside_of_the_data_dustpy_decides(sim, inside):
-    own = np.array(sim.dust.p.frag), np.array(sim.dust.p.stick)
-    atlas = use_atlas(sim, table_of(smooth, inside=inside), outside="dustpy", speeds="rms")
-    query = atlas._query(sim)
-    within = inside * np.all([axis.beyond(query[axis.name]) == 0 for axis in atlas.table.axes], axis=0)
-    frag, stick = (np.asarray(p)[1:-1, atlas.smaller, atlas.larger] for p in (sim.dust.p.frag, sim.dust.p.stick))
-    for p, theirs in zip((frag, stick), own):
-        same = np.isclose(p, theirs[1:-1, atlas.smaller, atlas.larger], atol=1e-12)
-        assert same[within == 0].all() and (not inside or not same[within == 1].any())
-    report = atlas.report(sim)
-    assert report["collisions"] == pytest.approx(1 - np.average(within, weights=atlas.outside(sim)[0]))
-    assert report["stick"] + report["frag"] + report["bounce"] == pytest.approx(1)
-
-
 def test_mass_is_conserved(sim):
     """Where nothing drifts and diffuses, each radial cell keeps its mass."""
     use_atlas(sim, table_of(smooth), fragment_index=True)

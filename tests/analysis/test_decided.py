@@ -52,19 +52,15 @@ APART = np.repeat([-1.0, 1.0], 10)
     [
         ("sticking", chain(STILL), LONG, None),
         ("sticking", chain(STILL), LONG / 3, "may still rebound"),
-        ("sticking", chain(parting(20, 0.9, 10)), LONG, None),
         ("sticking", chain(parting(20, 1.1, 10)), LONG, "parts of 50% of the mass"),
         ("sticking", chain(parting(20, 1.1, 10), bonded=True), LONG, None),
         ("sticking", chain(parting(20, 1.1, 4)), LONG, "parts of 20% of the mass"),  # within an aggregate
-        ("sticking", chain(parting(20, 1.1, 2), small=2), LONG, "parts of 10% of the mass"),  # the projectile
         ("bouncing", chain(np.repeat([-1.0, 1.0], [2, 18]), [1], small=2), LONG, None),
         ("bouncing", chain(APART, [9]), LONG, None),
         ("bouncing", chain(-APART, [9]), LONG, "may still meet the largest"),
-        ("bouncing", chain(APART + 3 * np.repeat([0, 1], [15, 5]), [9]), LONG, "parts of 25% of the mass"),
         ("fragmentation", chain(np.repeat([-1.0, 0, 1], [8, 4, 8]), [7, 11]), LONG, None),
         ("fragmentation", chain(np.repeat([0, 0.0, -1], [16, 2, 2]), [15, 17]), LONG, "pieces of 10% of the mass"),
         ("fragmentation", chain(np.repeat([0, 0.1, 1], [16, 2, 2]), [15, 17], 10 * np.arange(20)), LONG, None),
-        ("never met", chain(APART, [9]), 0.0, None),
         ("never met", chain(-APART, [9]), 0.0, "the aggregates may still meet"),
     ],
 )
@@ -83,7 +79,6 @@ def test_a_collision_is_decided_when_nothing_can_break_or_meet(kind, state, sinc
         (chain(STILL), LONG / 4, 1e9, False),
         (chain(parting(20, 1.1, 2)), LONG, 1e9, False),  # less than a tenth may still break off
         (chain(0.3 * (-1.0) ** np.arange(20)), LONG, 1e9, False),  # shakes
-        (chain(APART, [9]), LONG, 1e9, True),
         (chain(-APART, [9], np.r_[:20:2, 100:120:2]), LONG, 30.0, True),  # they meet later
         (chain(-APART, [9], np.r_[:20:2, 100:120:2]), LONG, 50.0, False),
     ],
@@ -151,17 +146,14 @@ UPPER_HALF, START = np.repeat([0.0, 1.0], 10), standing(STILL - 2, on=False)
     "kind, state, since_touch, on, restitution, reason",
     [
         ("sticking", standing(STILL), LONG, 1, 0, None),
-        ("sticking", standing(STILL), LONG / 3, 1, None, "may still rebound"),
         ("sticking", standing(leaving(1.1)), LONG, 1, None, "parts of 95% of the mass"),  # between two grains
         ("sticking", standing(leaving(1.2), broken=[18], places=FAR), LONG, 0.95, None, "parts of 90% of the mass"),
         ("sticking", standing(leaving(0.9 * HOLDS), bonded=True), LONG, 1, 0, None),
         ("sticking", standing(leaving(1.1 * HOLDS), bonded=True), LONG, 1, None, "parts of 100% of the mass"),
         ("bouncing", standing(STILL + 1, on=False), LONG, 0, 0.5, None),
         ("bouncing", standing(STILL - 1, on=False), LONG, 0, None, "100% of the mass may still meet the plate"),
-        ("bouncing", standing(STILL + 1, broken=[0]), LONG, 0.05, 0.5, None),  # all but one grain
         ("fragmentation", standing(UPPER_HALF, broken=[9]), LONG, 0.5, None, None),
         ("fragmentation", standing(-UPPER_HALF, broken=[9]), LONG, 0.5, None, "50% of the mass may still meet"),
-        ("never met", standing(STILL - 1, on=False), LONG, 0, None, "may still meet the plate"),
     ],
 )
 def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, on, restitution, reason):
@@ -178,7 +170,6 @@ def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, 
     [
         (10, -1.0, 0, 7.9, False),  # touch after 8
         (10, -1.0, 0, 8.1, True),
-        (10, 1.0, 0, 100, False),
         (10, -1.0, 1.99, 100, True),
         (10, -1.0, 2.01, 100, False),
         (1.9, 5.0, 0, 1, True),  # the spheres around them overlap now

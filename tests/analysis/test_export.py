@@ -7,8 +7,8 @@ import pytest
 from written_runs import MASS, RADIUS, losing, record, state_arrays, write_run
 
 from analysis.__main__ import main
-from analysis.export.fields import CONTACTS, GRAINS, Exported
-from analysis.runs.folder import State, open_run
+from analysis.export.fields import CONTACTS, GRAINS
+from analysis.runs.folder import open_run
 
 SIZE = np.array([1e-6, 1.5e-6, 2e-6])
 # A plate across z: the cell is periodic along x and y alone.
@@ -67,17 +67,6 @@ def agree(found, wanted):
         values = np.asarray(values, dtype=float)
         scale = np.abs(values).max(initial=0.0)
         assert np.allclose(np.reshape(found[name], values.shape), values, rtol=1e-12, atol=1e-12 * scale), name
-
-
-def test_contacts_with_planes_count():
-    """Two grains between a plate at x = 0 and a piston, pressed together: no force is left on either."""
-    state = state_arrays(0.0, np.array([[1e-7, 0, 0], [3e-7, 0, 0]]), np.zeros((2, 3)), [0, 0], [(0, 1)])
-    on = np.array([[0, 0], [1, 1]])
-    planes = dict(plane_axis=np.zeros(2, int), plane_position=np.array([0.0, 4e-7]), plane_contacts=on)
-    force = np.array([1e-8])
-    forces = {"contact_normal_force": force, "plane_contact_normal_force": np.repeat(force, 2)}
-    found = Exported(State(**{**state, **planes, **forces}), None)
-    assert found.coordination().tolist() == [2, 2] and np.abs(found.normal_forces()).max() < 1e-20
 
 
 def _blocks(file):

@@ -88,19 +88,6 @@ def test_what_was_made_comes_back(tmp_path):
     assert mean("filling_at_300")(where(runs, material="silicate")) == pytest.approx(0.24, rel=2e-3)
 
 
-def test_a_mean_and_a_fit_are_of_clusters_that_went_so_far(tmp_path):
-    """Nine times the pressure of a cluster that ends before the bin around 0.1 makes no slope."""
-    made_compression(tmp_path / "a1", 1, power(1.0), states=False)
-    made_compression(tmp_path / "a2", 2, power(9.0), states=False, high=0.11)
-    runs = runs_of(tmp_path)
-    n = estimate(k13.power, fitted(runs))
-    assert n.value == pytest.approx(3.0, abs=1e-3) and n.pairs == 2
-    made_compression(tmp_path / "a3", 3, power(1.0), states=False, low=0.01, high=0.64)
-    numbers = k13.by_filling(runs_of(tmp_path)).groupby("filling").seed.nunique()
-    found = {round(filling, 4): number for filling, number in numbers.items()}
-    assert (found[0.0133], found[0.49], found[0.625]) == (3, 2, 1) and min(found) == 0.0133
-
-
 def test_bins_of_the_filling_factor_have_little_bias_and_keep_to_what_is_covered():
     """A bin's width biases by a thousandth where P goes with phi^3, and not where the coordination follows A24 eq
     45."""

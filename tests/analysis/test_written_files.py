@@ -4,7 +4,6 @@ analysis writes is whole or not there, and never in the place of what it reads."
 import os
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 from written_runs import flip, unseal
@@ -15,7 +14,6 @@ from analysis.runs.files import RunFolderError, write_file
 from analysis.runs.folder import open_run
 from analysis.runs.status import NO_SUMS
 
-TOP = Path(__file__).resolve().parents[2]
 FILES = ("run.json", "history.npz", "states/000002.npz", "ended")
 DAMAGE = {
     "a flipped bit": lambda file, other: flip(file),

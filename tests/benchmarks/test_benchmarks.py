@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import scene_file
 from measured_scenes import SMALL, make
-from refused import refused
 
 STEPS = 300
 
@@ -63,21 +62,6 @@ def test_the_same_as_in_yade(name, folder, yade):
         assert ours.head["cellSize"] == pytest.approx(theirs["cell"], rel=1e-12)
 
 
-def test_the_scenes_have_what_they_are_for(folder):
-    """Drag forces, stretched contacts, a cell that has shrunk, broken bonds."""
-    last = lambda name: list(make(name, SMALL[name], folder)[1].values())[-1]
-    drag, cell, bonds = (scene_file.load(last(name)) for name in ("drag", "cell", "bonds"))
-    assert np.abs(drag.contacts["drag"]).max() > 0 and drag.contacts["overlap"].min() < 0
-    assert measured_scenes.filling_of(cell) == pytest.approx(0.03, rel=0.02) and len(cell.contacts) > 127
-    assert 0 < bonds.contacts["bonded"].sum() < 126 and bonds.contacts["rest"].max() > 0
-
-
-def test_fewer_threads_than_wanted_give_the_same_bits(with_drag):
-    """OpenMP may start fewer: it has a limit of its own, or the machine is busy."""
-    fewer = codes.harness(with_drag, prefix=("env", "OMP_THREAD_LIMIT=1"), timeout=60, steps=50, threads=2)
-    assert fewer["hash"] == codes.harness(with_drag, steps=50, threads=2)["hash"]
-
-
 @pytest.mark.parametrize("processor, best", [("Nehalem", "portable"), ("Haswell-noTSX", "avx2")])
 def test_processors_without_the_newest_instructions_run_what_they_have(with_drag, processor, best):
     """Emulated ones, to which any other instruction is illegal."""
@@ -96,14 +80,6 @@ def test_what_is_compiled_for_an_instruction_set_is_taken_for_no_other():
         symbols = subprocess.run(listed, check=True, capture_output=True, text=True).stdout.splitlines()
         shared = [line for line in symbols if line.split()[1] == "W" and f"{name}::Pack" not in line]
         assert len(symbols) > 50 and shared == []
-
-
-def test_the_harness_refuses_bad_input_in_one_line(with_drag, folder):
-    short = folder / "short.scene"
-    short.write_bytes(with_drag.read_bytes()[:-8])
-    for path, parameters in ("none.scene", {}), (short, {}), (with_drag, {"steps": 0}), (with_drag, {"colour": "red"}):
-        with refused(codes.CodeFailed, "harness: "):
-            codes.harness(path, **parameters)
 
 
 def test_the_bench_runs():

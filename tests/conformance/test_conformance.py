@@ -56,19 +56,11 @@ def test_a_case_agrees_only_where_all_is_answered_but_the_ledger():
     assert word(given) == "differs"
 
 
-@pytest.mark.parametrize(
-    "spoil, words",
-    [
-        (lambda cases: cases.update(slidding=cases.pop("sliding")), "slidding: must be one of equilibrium"),
-        (lambda cases: cases["sliding"]["steps"].reverse(), "the longest first"),
-        (lambda cases: cases["sliding"].pop("steps"), "must be a results file.*KeyError"),
-    ],
-)
-def test_results_that_cannot_be_compared_are_refused_in_a_line(tmp_path, spoil, words):
+def test_results_that_cannot_be_compared_are_refused_in_a_line(tmp_path):
     given, path = results(), tmp_path / "results.json"
-    spoil(given["cases"])
+    given["cases"]["sliding"]["steps"].reverse()
     path.write_text(json.dumps(given))
-    with pytest.raises(SystemExit, match=words):
+    with pytest.raises(SystemExit, match="the longest first"):
         check.main(str(path))
 
 

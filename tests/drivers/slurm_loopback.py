@@ -51,8 +51,6 @@ class Loopback:
         self.environment = {**os.environ, "SLURM_CONF": str(self.folder / "slurm.conf")}
 
     def __enter__(self):
-        if os.getuid():
-            raise NoSlurm("must be root, as slurmd starts jobs of users")
         host = socket.gethostname().partition(".")[0]
         settings = CONFIGURATION.format(host=host, folder=self.folder, ports=_free_ports(2), cores=os.cpu_count())
         (self.folder / "slurm.conf").write_text(settings)
@@ -74,11 +72,11 @@ class Loopback:
         return self
 
     def __exit__(self, *_):
-        if len(self._daemons) == 3:
-            self._end_jobs()
+        with suppress(NoSlurm):
+            self.ask("scancel", "--user=root")
+            self._wait("sh", "-c", '[ -z "$(squeue -h -t R,CG,S)" ]')
         for daemon in reversed(self._daemons):
             daemon.terminate()
-        for daemon in self._daemons:
             with suppress(subprocess.TimeoutExpired):
                 daemon.wait(timeout=20)
             daemon.kill()
@@ -86,31 +84,18 @@ class Loopback:
 
     def ask(self, *command):
         """What a command prints; raises NoSlurm when it fails."""
-        try:
-            done = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=60)
-        except subprocess.TimeoutExpired:
-            raise NoSlurm(f'{" ".join(command)}: no answer in 60 s') from None
+        done = subprocess.run(command, env=self.environment, capture_output=True, text=True, timeout=60)
         if done.returncode:
-            raise NoSlurm(f'{" ".join(command)}: {" ".join(done.stderr.split())}')
+            raise NoSlurm(f"{' '.join(command)}: {' '.join(done.stderr.split())}")
         return done.stdout
 
     def job(self, task):
         """{property: text} of a task such as 12_3, by scontrol."""
         return dict(pair.partition("=")[::2] for pair in self.ask("scontrol", "-o", "show", "job", task).split())
 
-    def _end_jobs(self):
-        with suppress(NoSlurm):
-            self.ask("scancel", "--user=root")
-            deadline = time.monotonic() + STARTING
-            while self.ask("squeue", "-h", "-t", "R,CG,S").strip() and time.monotonic() < deadline:
-                time.sleep(0.5)
-
     def _start(self, *command):
         with open(self.folder / f"{command[0]}.out", "wb") as output:
-            try:
-                daemon = subprocess.Popen(command, env=self.environment, stdout=output, stderr=output)
-            except FileNotFoundError:
-                raise NoSlurm(f"{command[0]}: not installed (make test-slurm installs it)") from None
+            daemon = subprocess.Popen(command, env=self.environment, stdout=output, stderr=output)
         self._daemons.append(daemon)
 
     def _wait(self, *command):
@@ -119,11 +104,9 @@ class Loopback:
         while True:
             try:
                 return self.ask(*command)
-            except NoSlurm as error:
-                dead = [daemon.args[0] for daemon in self._daemons if daemon.poll() is not None]
-                if dead or time.monotonic() > deadline:
-                    printed = "".join((self.folder / f"{name}.out").read_text() for name in dead)
-                    raise NoSlurm(f'{" ".join(dead) or error}: {" ".join(printed.split())}') from None
+            except NoSlurm:
+                if time.monotonic() > deadline:
+                    raise
                 time.sleep(0.2)
 
 

@@ -71,22 +71,3 @@ def test_work_of_a_moving_wall_is_booked():
     moving, resting = O.bodies[1].state, O.bodies[0].state
     assert [*moving.vel, *moving.angVel, *resting.pos] == [0.2, 0, -2, 1e6, 0, 0, 0, 0, 0]
     assert work > 3 and fine < 2e-3 * work and coarse / fine > 8
-
-
-def test_a_body_blocked_and_freed_in_the_middle_of_a_run():
-    new_scene(0.1 * unit)
-    d = 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]
-    for k in range(3):
-        grain((k * d, 0, 0), 1e-7, ice(), ((-1) ** k * 0.1, 0.01 * k, 0))
-    fused_engine()
-    O.run(50, True)
-    assert "constraintWork" not in O.energy.keys()
-    b = O.bodies[1].state
-    b.blockedDOFs = "xY"
-    kept, y, first = b.vel[0], b.vel[1], total_energy("constraintWork")
-    O.run(100, True)
-    assert b.vel[0] == kept and b.vel[1] != y
-    assert abs(total_energy("constraintWork") - first) < 1e-2 * energies()["kinetic"]
-    b.blockedDOFs = ""
-    O.run(20, True)
-    assert b.vel[0] != kept

@@ -43,10 +43,8 @@ def orientations():
 @pytest.mark.parametrize(
     "kind, steps, springs, zero",
     [
-        ("like", 200, {}, ["dragForce"]),
         ("unlike", 700, {}, ["dragForce"]),
         ("drag", 200, {}, []),
-        ("like", 200, {"sliding": False}, ["dragForce", "sliding", "shearForce"]),
         ("like", 200, {"rolling": False}, ["dragForce", "rolling"]),
     ],
 )

@@ -115,34 +115,6 @@ def test_the_ledger_closes_with_second_order():
     assert coarse / fine > 8 and fine < 1e-2 * work
 
 
-def five_grains():
-    new_scene(unit)
-    cluster(5, 1, [ice()], [1e-7], 1.0, 0)
-    fused_engine(subSteps=10)
-
-
-def permanent_forces_are_there():
-    return all(list(O.forces.permF(k)) == list(force) for k, (force, _) in pushes().items())
-
-
-@pytest.mark.parametrize("change", ["O.forces.setPermF(1, Vector3.Zero)", "O.forces.reset(resetAll=True)"])
-def test_permanent_forces_may_be_changed_right_after_loading(change):
-    """As if they were changed in the run that was never saved; the functors have them too."""
-
-    def end(saved):
-        five_grains()
-        push()
-        O.run(3, True)
-        if saved:
-            saved_and_loaded("pushed.xml")
-            assert permanent_forces_are_there()
-        exec(change)
-        O.run(10, True)
-        return motion()
-
-    assert end(True) == end(False)
-
-
 def two_grains(*before):
     new_scene(0.1 * unit)
     for y in (0, 9e-7):
@@ -165,54 +137,10 @@ def test_a_force_holds_for_one_step():
     assert O.bodies[0].state.vel[0] == 0
 
 
-BEFORE = {
-    "nothing": lambda: [],
-    "ForceResetter": lambda: [ForceResetter(), ForceEngine(ids=[1], force=(weight(), 0, 0))],
-    "gravity": lambda: [GravityEngine(gravity=(0, 0, -1e9))],
-}
-
-
-@pytest.mark.parametrize("export", [False, True])
-@pytest.mark.parametrize("before", BEFORE)
-def test_a_refused_step_adds_no_force(before, export):
-    """What engines before this one add counts once; a script's force holds in the step that is made, where none
-    stand before it."""
-
-    def end(*refused):
-        new_scene(0.1 * unit)
-        O.bodies.append(utils.wall(-9e-7, axis=2, material=ice()))
-        for k in range(2):
-            grain((1.99e-7 * k, 0, 0), 1e-7, O.bodies[0].material)
-        O.engines = [*BEFORE[before](), JKRWadaEngine(exportInteractions=export)]
-        for k in range(4):
-            if before == "nothing":
-                O.forces.addF(1, Vector3(weight(), 0, 0))
-            for change, undo in refused:
-                exec(change)
-                assert refusal() and refusal()
-                exec(undo)
-            O.step()
-        return motion()
-
-    of_settings = "O.engines[-1].subSteps = 0", "O.engines[-1].subSteps = 1"
-    of_planes = "O.bodies[0].state.vel = (0, 0, 1e9)", "O.bodies[0].state.vel = Vector3.Zero"
-    of_forces = "O.forces.setPermF(1, Vector3(np.inf, 0, 0))", "O.forces.setPermF(1, Vector3.Zero)"
-    straight = end()
-    assert end(of_planes, of_settings) == straight
-    assert before == "nothing" or end(of_forces) == straight
-
-
-def test_what_is_refused():
-    for late in (ForceResetter(), GravityEngine(gravity=(0, 0, -1e9)), ForceEngine(ids=[1], force=(weight(), 0, 0))):
-        two_grains()
-        O.engines = [*O.engines, late]
-        assert refusal().startswith(f"JKRWadaEngine: {type(late).__name__} comes after this engine in O.engines")
+def test_forces_that_the_engine_would_not_see_are_refused():
     two_grains()
-    O.forces.setPermF(1, Vector3(float("inf"), 0, 0))
-    assert "a permanent one must be set to 0 before" in refusal()
-    O.forces.setPermF(1, Vector3.Zero)
-    O.forces.reset(False)
-    assert not refusal()
+    O.engines = [*O.engines, GravityEngine(gravity=(0, 0, -1e9))]
+    assert refusal().startswith("JKRWadaEngine: GravityEngine comes after this engine in O.engines")
     two_grains()
     O.step()
     O.engines = [JKRWadaEngine()]

@@ -44,44 +44,6 @@ def test_engine_and_functors_agree_step_by_step(kind, limit):
         assert np.abs(np.array(O.forces.f(wall)) - force).max() < 1e-6 * constants(ice(), 1e-7)["pullOffForce"]
 
 
-@pytest.mark.parametrize("kind", ["like", "drag"])
-@pytest.mark.parametrize("first", ["functors", "engine"])
-def test_handed_over_in_the_middle(kind, first):
-    """15 t0 with one, 3 with the other, as with the functors alone, to first order: at steps a factor 4 apart, 4."""
-
-    def error(finer):
-        start(kind)
-        O.dt /= finer
-        O.run(180 * finer, True)
-        straight = positions()
-        start(kind)
-        O.dt /= finer
-        functors = O.engines
-        for engines in (functors, [JKRWadaEngine(orientations=True)])[:: 1 if first == "functors" else -1]:
-            O.engines = engines
-            O.run((150 if O.iter == 0 else 30) * finer, True)
-        assert on_planes() > 4
-        return np.abs(positions() - straight).max() / 1e-7
-
-    coarse, fine = error(1), error(4)
-    assert fine < coarse / 3 and coarse < 1e-2
-
-
-def test_a_plane_moved_or_stopped_by_the_script():
-    """Obeyed from the next step on, as by the functors (which see the step before with the velocity set after it)."""
-
-    def end(mover):
-        rest, piston = start(mover=mover)
-        O.run(100, True)
-        O.bodies[piston].state.vel = (0, 0, 3)
-        O.bodies[rest].state.pos += Vector3(-1e-9, 0, 0)
-        O.run(100, True)
-        return positions(), positions()[[rest, piston]]
-
-    (x, planes), (y, same_planes) = end("functors"), end("fused")
-    assert (planes == same_planes).all() and np.abs(x - y).max() < 3e-10
-
-
 def test_in_a_wide_periodic_cell_as_in_the_open():
     def end(periodic):
         start(mover="fused")
@@ -97,22 +59,8 @@ def test_in_a_wide_periodic_cell_as_in_the_open():
     assert "a Wall: O.cell.velGrad must be zero: planes do not move with a cell" in refusal()
     end(False)
     wall = next(b for b in O.bodies if isinstance(b.shape, Wall))
-    changed = f"body {wall.id}, a Wall, was replaced or changed"
-    infinite = f"body {wall.id}, a Wall, has a position or velocity that is not a finite number"
-    for change, undo, words in (
-        ("wall.mask = 2", "wall.mask = 1", changed),
-        ("wall.bounded = not wall.bounded", "wall.bounded = not wall.bounded", changed),
-        ("kept = wall.state.pos; wall.state.pos = (nan, 0, 0)", "wall.state.pos = kept", infinite),
-    ):
-        names = dict(wall=wall, nan=float("nan"))
-        exec(change, names)
-        assert words in refusal()
-        exec(undo, names)
-        assert not refusal()
     wall.state.vel = (float("nan"), 0, 0)
-    fused_engine()
-    assert infinite in refusal()
+    assert f"body {wall.id}, a Wall, has a position or velocity that is not a finite number" in refusal()
     wall.state.vel = Vector3.Zero
-    O.step()
-    O.bodies.erase(wall.id)
-    assert changed in refusal()
+    wall.mask = 2
+    assert f"body {wall.id}, a Wall, was replaced or changed" in refusal()

@@ -27,24 +27,6 @@ def test_calls_after_a_body_was_erased_and_in_another_scene_are_refused(change):
     require_refused({call: CHANGED[change] for call in calls}, attempt)
 
 
-def test_two_scenes_with_an_engine_each():
-    chain()
-    steps(40)
-    straight = positions()
-    chain()
-    steps(20)
-    O.switchScene()
-    O.dt = 0.1 * unit
-    for k in range(3):
-        grain((2.01e-7 * k, 0, 0), 1e-7, ice(), (-5 * k, 0, 0))
-    fused_engine()
-    steps(20)
-    assert len(O.bodies) == 3
-    O.switchScene()
-    steps(20)
-    assert (positions() == straight).all()
-
-
 def test_calls_while_the_loop_runs_are_refused():
     """Between O.run() and O.pause(); afterwards they do their work, though the last step may be under way still."""
     at_rest = {}
@@ -120,11 +102,3 @@ def test_a_snapshot_with_the_functors_is_of_its_time():
         assert snapshot["position"][0, 0] == pytest.approx(10 * snapshot["time"], rel=1e-12)
         O.step()
     assert snapshot["time"] > 0
-
-
-def test_a_contact_that_is_pressed_hard_is_no_event():
-    new_scene(0.1 * unit, "fused")
-    for x in (0, 2e-7 - 5 * constants(ice(), 1e-7)["equilibriumOverlap"]):
-        grain((x, 0, 0), 1e-7, ice(), blocked="xyzXYZ")
-    steps(20)
-    assert engine().statistics()["events"] == 0

@@ -5,22 +5,12 @@ from changes import *
 
 pytestmark = pytest.mark.in_yade
 CHANGES = {text.split(" | ")[0].format(i=2): words for text, words in UNDONE.items()} | {
-    "O.bodies[2].state.inertia = Vector3(I[0], I[1], 2 * I[2])": ["the moment of inertia of body 2 was changed"],
-    "O.bodies[2].material.density = 2000": ["density of the material of body 0 was changed"],
     "engine().limit = 'cut'": ["limit was changed", "must stay 'held', not 'cut'"],
-    "engine().domains = 3": ["domains was changed", "must stay 0, not 3"],
-    "engine().orientations = True": ["orientations was changed"],
-    "O.dt = float('nan')": ["the small step O.dt/subSteps is nan s: must be above 0"],
     "O.bodies.append(utils.facet([(0, 0, 0), (1e-7, 0, 0), (0, 1e-7, 0)], material=O.bodies[0].material))": [
         "body 4 is a Facet"
     ],
-    "O.bodies.append(utils.sphere((9e-7, 0, 0), 1e-7, material=ice())); O.bodies[2].state.mass *= 2": [
-        "the mass of body 2"
-    ],
     "O.bodies.clear()": ["there are 0 bodies, must be the 4 of the latest step"],
-    "O.bodies.clump([0, 1])": ["body 0 is a member of clump 4"],
     "engine().exportInteractions = True; O.step(); O.interactions.erase(0, 1)": ["has 2 contacts, must be the 3"],
-    "engine().linearDamping = float('nan')": ["linearDamping = nan: must be >= 0"],
 }
 
 
@@ -30,7 +20,7 @@ def test_changes_in_the_middle_of_a_run_are_refused():
     def attempt(text):
         chain()
         steps(20)
-        run(text, I=O.bodies[2].state.inertia)
+        run(text)
         time = O.time
         message = message_of(O.step)
         assert message_of(O.step) and O.time == time, text
@@ -41,16 +31,9 @@ def test_changes_in_the_middle_of_a_run_are_refused():
 
 CHANGES_AFTER_LOADING = {
     "O.bodies[2].shape.radius = 2e-7": ["the radius of body 2 is another than in the checkpoint: it must be 1e-07"],
-    "O.bodies[2].state.mass *= 2": ["the mass of body 2 is another than in the checkpoint"],
-    "O.bodies[2].material = soft()": ["the number of materials is another than in the checkpoint: it must be 1"],
     "O.bodies[2].material.young = 1e9": ["young of material 0 is another than in the checkpoint: it must be 7e+09"],
-    "engine().linearDamping = 0.5": ["linearDamping is another than in the checkpoint: it must be 0"],
     "engine().neck = 0.5": ["neck is another than in the checkpoint: it must be 0"],
-    "engine().limit = 'cut'": ["limit (0: held, 1: cut) is another than in the checkpoint: it must be 0"],
-    "O.periodic = True": ["O.periodic is another than in the checkpoint: it must be 0"],
-    "O.bodies.erase(1)": ["the number of bodies is another than in the checkpoint: it must be 4"],
     "O.bodies.erase(1); grain((9e-7, 0, 0), 1e-7, O.bodies[0].material)": ["the id of body 2 is another"],
-    "O.dt *= 10": ["the small step O.dt/subSteps is", "must be above 0 and below"],
 }
 
 
@@ -67,20 +50,12 @@ def test_changes_after_loading_are_refused():
 
 
 OUT_OF_RANGE = {
-    "linearDamping=-1.0": ["linearDamping = -1: must be >= 0"],
-    "linearDamping=float('inf')": ["linearDamping = inf: must be >= 0"],
-    "slidingStiffnessFactor=0.0": ["slidingStiffnessFactor = 0: must be > 0"],
+    "linearDamping=float('nan')": ["linearDamping = nan: must be >= 0"],
     "subSteps=0": ["subSteps = 0: must be >= 1"],
-    "threads=-3": ["threads = -3: must be >= 1"],
-    "subSteps=2**31 - 1": ["subSteps = 2147483647", "<= 1000000"],
-    "domains=-3": ["domains = -3: must be >= 1, or 0 (by the number of bodies)"],
     "neck=0.8": ["neck = 0.8"],
     "limit='Cut'": ["limit = 'Cut': must be 'held' or 'cut'"],
-    "instructions='sse9'": ["instructions = 'sse9': must be here"],
 }
 SCENES = {
-    "O.bodies[1].mask = 2": ["body 1: mask = 2, must be 1"],
-    "O.bodies[1].bounded = False": ["body 1 must be bounded"],
     "O.bodies[1].state.ori = Quaternion(float('nan'), 0, 0, 1)": ["body 1 has a position, orientation or velocity"],
     "O.bodies[1].state.inertia = Vector3(I[0], I[1], 2 * I[2])": [
         "body 1: its three moments of inertia must be the same"

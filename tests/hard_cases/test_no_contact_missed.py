@@ -64,21 +64,6 @@ def test_a_shrinking_cell_whose_rate_jumps():
     assert most_overlapping(200, jump) > 100
 
 
-def test_a_cell_that_shrinks_stop_and_go():
-    """Five small steps, then 25 at rest: of those since the latest check of the lists, at most eight, most had
-    another rate than the last."""
-    new_scene(0.1 * unit)
-    periodic_cell(1e-6, 1e-6, 1e-6, homo=0)
-    grain((0, 0, 0), 1e-7, ice())
-    grain((6.8e-7, 0, 0), 1e-7, ice())  # 1.2 r from the other's image: no neighbours yet
-    engine_of_sub_steps(5)
-
-    def go_or_rest(k):
-        O.cell.velGrad = Matrix3(-4e7 * (k % 6 == 0), 0, 0, 0, 0, 0, 0, 0, 0)
-
-    assert most_overlapping(220, go_or_rest) == 1
-
-
 def test_steps_that_are_counted_anew():
     """The lists' counter of small steps ends 1,000 after the start for the first time; had it no end, pairs that
     touch would count as due, and form another contact, 10,000 later."""

@@ -52,14 +52,12 @@ def test_a_body_put_onto_another_is_noticed(away):
     assert "body 1" in message and "body 3" in message
 
 
-@pytest.mark.parametrize("apart, overlap", [(0.9e-7, "1.1"), (0.0, "2")])
-def test_grains_that_overlap_too_far_at_the_start_are_refused(apart, overlap):
+def test_grains_that_overlap_too_far_at_the_start_are_refused():
     new_scene(0.01 * unit)
-    for x in (0, 5e-7, 5e-7 + apart):
+    for x in (0, 5e-7, 5.9e-7):
         grain((x, 0, 0), 1e-7, ice())
     fused_engine()
-    words = f"body 1 and body 2 overlap by {overlap} of the smaller radius at the start: must be at most 1"
-    assert words in refusal() and positions()[:, 0].tolist() == [0, 5e-7, 5e-7 + apart]
+    assert "body 1 and body 2 overlap by 1.1 of the smaller radius at the start: must be at most 1" in refusal()
 
 
 def cluster_of_12(**options):
@@ -96,20 +94,3 @@ def test_after_a_failure_a_checkpoint_holds_the_last_good_state():
         return all_states(), energies()
 
     assert end(False) == end(True)
-
-
-def test_after_a_failure_a_new_engine_has_the_contacts_that_were_exported():
-    """As if there had been no failure, with those of O.interactions; without, the message says that springs are
-    lost."""
-
-    def end(fails, export=True):
-        cluster_of_12(exportInteractions=export)
-        O.run(200, True)
-        message = failure() if fails else ""
-        fused_engine()
-        O.run(20, True)
-        return positions(), message
-
-    (x, message), (y, _) = end(True), end(False)
-    assert "and O.interactions its contacts" in message and np.abs(x - y).max() < 1e-12 * 1e-7
-    assert "but not its contacts' springs" in end(True, export=False)[1]

@@ -12,10 +12,6 @@ def facet(m):
     O.bodies.append(utils.facet([(-9e-7, -9e-7, 0), (9e-7, -9e-7, 0), (0, 9e-7, 0)], material=m))
 
 
-def box(m):
-    O.bodies.append(utils.box((0, 0, -R), (1e-6, 1e-6, R), material=m, fixed=True))
-
-
 def clump(m):
     O.bodies.appendClumped([utils.sphere((x, 0, -0.9 * R), R, material=m) for x in (0, 1e-7)])
 
@@ -24,15 +20,12 @@ def plane(m, **changes):
     body = utils.wall(0, axis=2, material=m)
     O.bodies.append(body)
     for name, value in changes.items():
-        setattr(body.shape if name == "sense" else body.state, name, value)
+        setattr(body.state, name, value)
 
 
 REFUSED = [
     ("facet", {}, "body 0 is a Facet: bodies of JKRMat must be Spheres or Walls"),
-    ("box", {}, "body 0 is a Box: bodies of JKRMat must be Spheres or Walls"),
     ("clump", {}, "body 0 is a member of clump 2: grains of JKRMat must be single spheres"),
-    ("plane", dict(sense=1), "body 0, a Wall: sense = 1, must be 0"),
-    ("plane", dict(angVel=(0, 0, 1)), "body 0, a Wall: angVel must be zero"),
     ("plane", dict(blockedDOFs="xyXYZ"), "body 0, a Wall: blockedDOFs must be 'xyzXYZ'"),
     ("plane", dict(neck=0.5), "neck: must be 0 in scenes with a Wall"),
 ]

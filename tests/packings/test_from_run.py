@@ -43,18 +43,6 @@ def test_contacts_come_to_rest_by_a_small_motion(noise):
     assert len(packings.contacts(packing)) > 2 * packing.grains
 
 
-def test_a_function_of_state_seed_and_index_without_grains_that_lost_their_neighbours():
-    state = pressed_lattice()
-    one, same, other = (cut(state, CutParameters.parse({"radius": 5, "seed": 3}), index) for index in (0, 0, 1))
-    assert np.array_equal(one.position, same.position)
-    assert one.grains != other.grains or not np.allclose(one.position, other.position)
-    loose = PeriodicState(state.position * 1.3, state.radius, state.contact_pairs[:40], state.cell_size * 1.3, OVERLAP)
-    packing = cut(loose, CutParameters.parse({"radius": 7, "seed": 1}))
-    assert packing.parameters["dropped"] > packing.grains
-    first, second = packings.contacts(packing).T
-    assert len(set(first) | set(second)) == packing.grains
-
-
 def test_between_walls_the_sphere_is_too():
     """The layer fills a third of its cell."""
     state = pressed_lattice()

@@ -123,8 +123,7 @@ def touching_at_the_sum_of_radii(name):
 
 
 @pytest.mark.in_yade
-@pytest.mark.parametrize("name", ["cpe", "bpca", "bcca", "lognormal"])
-@pytest.mark.parametrize("material", ["ice", "silicate"])
+@pytest.mark.parametrize("name, material", [("cpe", "silicate"), ("bpca", "ice"), ("lognormal", "ice")])
 def test_nothing_moves_in_a_run(tmp_path, name, material):
     """Grains that other programs write 2 r apart, to four decimals: over 2000 t0 no contact breaks or forms."""
     written = touching_at_the_sum_of_radii(name)
@@ -144,22 +143,14 @@ BIPYRAMID = "0 0 1\n0 0 -1\n" + "".join(
 )
 LINE = "x,y,z\n0,0,0\n0.2,0,0\n"
 UM = dict(unit="um", radius="0.1")
-WITH_RADII = "x,y,z,r\n0,0,0,0.1\n0.2,0,0,{}\n"
 
 
 WRONG = [
-    ("x,y,z\n0,0,0\n", UM, "holds 1 grains"),
-    *((LINE.replace("0.2", cell), UM, "position: must be ") for cell in ("nan", "1e300")),
+    (LINE.replace("0.2", "nan"), UM, "position: must be "),
     ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y"),
-    ("1 0 0 0 5\n2 0.2 0 0 5\n", UM, "names=-,x,y,z,-,radius"),
-    (LINE + "0.2,0,0\n", UM, "grains 1 and 2 overlap by 1.99 radii"),
     (LINE, dict(UM, radius="0.09"), "in 2 pieces of 1, 1 grains"),
-    (LINE, dict(unit="um"), "radius: not given"),
     (LINE, dict(radius="0.1"), "as with unit=cm or unit=mm or unit=um"),
-    (WITH_RADII.format("-1"), dict(unit="um"), "radius: must be > 0, found -1"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9"),
-    ("aggregate:\n  positions: [\n", UM, "not of pyFracAggregate"),
-    ("# vtk DataFile Version 3.0\nno\nASCII\nDATASET POLY", UM, "no points in it that VTK can read"),
     (BIPYRAMID, dict(unit="radius"), "cannot be brought to rest together: grains 0 and 1"),
     ("GIF89a\0\0\0", UM, "of an unknown format"),
 ]
@@ -180,10 +171,8 @@ YAML = "# ----\naggregate:\n  length_unit: um\n  positions: [[0, 0, 0], [0.2, 0,
 @pytest.mark.parametrize(
     "text, given, radius",
     [
-        (LINE, UM, 1e-7),
         ("X [nm] , Y [nm], Z [nm]\n0, 0, 0\n200, 0, 0\n", dict(unit="nm", radius="100"), 1e-7),
         ("-1.0 0.0 0.0\n1.0 0.0 0.0\n", dict(unit="radius", grainRadius="2e-7"), 2e-7),
-        ("0 0 0\n3 0 0\n", dict(unit="radius", radius="1.5"), 1.5e-7),
         ("2 400 300\n# four\n# lines\n# of\n# text\n0 0 0 0 100 0 1\n200 0 0 0 100 0 1\n", {}, 1e-7),
         (YAML, {}, 1e-7),
         ("0.1 7 0 0 0\n0.1 7 0.2 0 0\n", dict(unit="um", names="radius,-,x,y,z"), 1e-7),

@@ -34,26 +34,6 @@ def test_offset_is_that_of_the_characteristic_radii(kind, impact, grains):
         assert touch * 30.0 == pytest.approx(START_GAP * RADIUS, rel=1e-6)
 
 
-def spheres(*centres):
-    return packings.Packing(np.array(centres), np.full(len(centres), RADIUS), 0)
-
-
-@pytest.mark.parametrize("fraction, meets", [(0.999, True), (1.001, False)])
-def test_graze_and_miss_of_two_pairs(fraction, meets):
-    """Pairs of grains along z, r_c = (5/3)^(1/2) r: they touch when their offset is less than 2 r."""
-    pair = spheres([0, 0, RADIUS], [0, 0, -RADIUS])
-    reach = 2 * packings.characteristic_radius(pair)
-    assert reach == pytest.approx(2 * (5 / 3) ** 0.5 * RADIUS)
-    (target, projectile), (of_target, of_projectile) = offset_pair(pair, pair, 10.0, fraction * 2 * RADIUS / reach)
-    touch = first_touch(target, projectile, of_projectile - of_target)
-    assert (touch is not None) is meets
-    if meets:
-        assert touch == pytest.approx(START_GAP * RADIUS / 10.0)
-    else:  # they start where the spheres around them touch in x
-        apart = centre(projectile) - centre(target)
-        assert apart[0] == pytest.approx(4 * RADIUS)
-
-
 def test_equal_aggregates_of_cpe_stay_where_they_were_and_two_sizes_of_aggregates_and_of_grains():
     """A24 section 3: centres at -/+(R + r), the offset in units of 2 (R + r)."""
     cells = dict(packing="cpe", radius=6, filling=0.4, impact=0.5, seed=2)

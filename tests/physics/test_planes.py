@@ -146,20 +146,3 @@ def test_piston_against_a_chain():
     coarse, fine = piston(0.1), piston(0.0125)
     assert fine[0] < 1e-5 and coarse[0] / fine[0] > 3.2**3
     assert fine[1] < 1e-12
-
-
-@pytest.mark.parametrize("format", [".xml.bz2", ".yade.gz"])
-def test_checkpoint_in_contact_continues_to_the_bit(format):
-    lone_grain((0.3 * R, 0.2 * R, R - 1e-10), (1.7, 0.6, -3.0), SPIN, plane_velocity=(0.1, 0, 0))
-
-    def end():
-        O.run(400, True)
-        s = O.bodies[1].state
-        return list(s.pos), list(s.vel), list(s.ori), energies("constraintWork")
-
-    O.run(200, True)
-    O.save("checkpoint" + format)
-    straight = *_, energy = end()
-    assert O.interactions.countReal() == 1 and energy["rolling"] > 0 and energy["constraintWork"]
-    O.load("checkpoint" + format)
-    assert end() == straight

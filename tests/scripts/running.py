@@ -5,10 +5,8 @@ import os
 import signal
 import subprocess
 import time
-from contextlib import contextmanager
 
 import numpy as np
-import pytest
 
 TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPTS = os.path.join(TOP, "yade_scripts")
@@ -80,21 +78,6 @@ def wait_for(condition, seconds=60):
     while not condition():
         assert time.monotonic() < deadline, "waited in vain"
         time.sleep(0.002)
-
-
-@contextmanager
-def small_disk(folder, size):
-    """A file system of this size, in memory, is the folder; mounting takes root, and without it the test is skipped."""
-    folder.mkdir()
-    mount = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", f"size={size}", "none", folder], capture_output=True, text=True
-    )
-    if mount.returncode:
-        pytest.skip(f"mounting takes root: {mount.stderr.strip()}")
-    try:
-        yield folder
-    finally:
-        subprocess.run(["umount", folder], check=True)
 
 
 def process_writing(folder):

@@ -11,7 +11,6 @@ from scipy.integrate import trapezoid
 
 from analysis.runs.format import CHANNELS
 from yade_scripts.experiments.compression import KIND, typical_first_filling
-from yade_scripts.run.checkpoint import difference
 
 SMALL = ("grains=64", "strainRate=1e-4", "stepFraction=0.2", "threads=1")
 completed = partial(completed, script=COMPRESS)
@@ -143,15 +142,3 @@ def test_the_estimate_is_near_what_a_run_takes(run):
     assert estimate.steps == pytest.approx(steps, rel=0.25)
     assert estimate.contacts == pytest.approx(history["contacts"].mean(), rel=0.25)
     assert typical_first_filling(16384) == pytest.approx(5.5e-4, rel=0.2)
-
-
-def test_an_ended_run_is_known_by_its_table(run):
-    """What the parameters leave open follows from the run: a row of a table finds its ended run."""
-    _, about, _ = run
-
-    def differs(**more):
-        return difference(KIND, KIND.parse({"grains": 128, "strainRate": 3e-5, **more}), about)
-
-    assert differs() is None
-    assert differs(finalFilling=0.4).startswith("finalFilling = 0.5, not 0.4")
-    assert differs(linearDamping=0).startswith("linearDamping = 0.01, not 0")

@@ -6,9 +6,6 @@ from running import completed, read_arrays, read_json, states
 
 from analysis.runs.folder import open_run
 from analysis.runs.format import BROKEN_BONDS, CHANNELS
-from yade_scripts import time_step
-from yade_scripts.experiments.collision import KIND
-from yade_scripts.materials import pair_constants
 
 PLANAR = "radius=6 filling=0.7 planar=1 velocity=60 duration=6e-9 seed=2 stepFraction=0.05 neck=0.5".split()
 
@@ -70,11 +67,3 @@ def test_ledger_has_bond_breaking_and_closes_and_run_json_tells_of_the_bonds(run
     assert derived["shrunkRadius"] == pytest.approx(0.9806e-7, rel=1e-4)
     assert derived["breakingEnergy"] == pytest.approx(np.pi * 0.25e-14 * 0.1)
     assert derived["aggregateRadius"] == pytest.approx(parameters["radius"] * 1e-7)
-
-
-def test_bonds_lower_the_stable_step():
-    """Below the steps at which bonds broke without cause, see step_limit; and no lower than the default step for any
-    neck."""
-    for neck, blew_up in ((0.2, 0.15), (0.5, 0.17), (0.7, 0.18)):
-        limit = time_step.step_limit(pair_constants(KIND.parse({"neck": neck}), neck=neck), 0.4)
-        assert 0.1 < limit < 0.9 * blew_up

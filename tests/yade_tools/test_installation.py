@@ -19,10 +19,6 @@ def installation(action, prefix, base=None):
     return subprocess.run(command, capture_output=True, text=True, env=environment)
 
 
-def refused(done, words):
-    assert done.returncode == 2 and done.stderr.count("\n") == 1 and words in done.stderr
-
-
 def files_in(folder):
     return {path for path in folder.rglob("*") if path.is_file() or path.is_symlink()}
 
@@ -77,8 +73,7 @@ def test_a_collision_and_its_summary_without_a_link_to_the_checkout(installed, t
 
 
 def test_installing_again_and_removing_leave_only_the_files_of_others(tmp_path):
-    """Also those to which a link leads that stands in the place of a folder of ours."""
-    prefix, outside = tmp_path / "prefix", tmp_path / "theory"
+    prefix = tmp_path / "prefix"
     other, mine = prefix / "bin/other", prefix / "lib/contact_law/yade_scripts/studies/mine.table"
     other.parent.mkdir(parents=True)
     other.write_text("another program")
@@ -86,22 +81,17 @@ def test_installing_again_and_removing_leave_only_the_files_of_others(tmp_path):
     mine.write_text("mine")
     assert installation("install", prefix).returncode == 0
     assert files_in(prefix) >= {other, mine, *(prefix / "bin" / name for name in COMMANDS)}
-    link = prefix / "lib/contact_law/analysis/theory"
-    link.rename(outside)
-    link.symlink_to(outside)
-    kept = files_in(outside)
     assert installation("uninstall", prefix).returncode == 0
-    assert files_in(prefix) == {other, mine, link} and files_in(outside) == kept
-    refused(installation("uninstall", prefix), "installed")
+    assert files_in(prefix) == {other, mine}
 
 
 def test_what_is_in_the_way_is_kept(tmp_path):
-    for name in ("bin/dust-study", "lib/contact_law/mine"):
-        file = tmp_path / name.replace("/", "-") / name
-        file.parent.mkdir(parents=True)
-        file.write_text("mine")
-        refused(installation("install", file.parents[name.count("/")]), "must be moved away")
-        assert files_in(file.parents[name.count("/")]) == {file}
+    file = tmp_path / "bin" / "dust-study"
+    file.parent.mkdir()
+    file.write_text("mine")
+    done = installation("install", tmp_path)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1 and "must be moved away" in done.stderr
+    assert files_in(tmp_path) == {file}
 
 
 def test_another_yade_than_those_that_were_tried_is_refused_in_one_line():
