@@ -3,7 +3,6 @@
 import json
 import shutil
 import subprocess
-from dataclasses import replace
 
 import numpy as np
 import pandas
@@ -12,10 +11,8 @@ from matplotlib.colors import to_rgb
 from written_runs import RADIUS, facing, losing, record, write_run
 
 from analysis.__main__ import main
-from analysis.figures.collision import grains_figure
 from analysis.figures.energy import energy_figure
 from analysis.figures.grain_colours import AGGREGATE_COLOURS
-from analysis.figures.sphere_raster import paint_spheres
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLOURS
 from analysis.runs.ledger import fractions
@@ -42,29 +39,6 @@ def test_energy_areas_are_the_fractions(run):
     for name in parts:
         assert drawn[name] == pytest.approx(abs(parts[name][middle]), abs=1e-9)
     assert upper.lines[0].get_ydata() == pytest.approx(sum(parts.values()))
-
-
-def test_grains_are_shown_at_start_maximum_and_end_and_fluffy_aggregates_whole(run):
-    """Of the same grains, cut at z = 0 and not: more of the picture is covered."""
-    titles = [axes.get_title(loc="left") for axes in grains_figure(run).axes]
-    assert titles[0] == "$t$ = 0.0 ns" and titles[-1] == f"$t$ = {run.last.time * 1e9:.1f} ns" and 2 <= len(titles) <= 3
-    covered = []
-    for filling, words in ((0.4, "behind"), (0.1, "all grains")):
-        figure = grains_figure(replace(run, parameters={**run.parameters, "filling": filling}))
-        assert words in figure._suptitle.get_text()
-        covered.append((figure.axes[0].images[0].get_array() < 1).any(axis=2).sum())
-    assert covered[1] > covered[0]
-
-
-def test_painted_spheres():
-    """The nearer one hides the farther; the area is that of a disc; what is smaller than a pixel is shown."""
-    position, colour = np.array([[0.0, 0.0, 5.0], [0.0, 0.0, 0.0], [3.0, 0.0, 0.0]]), np.eye(3)
-    image = paint_spheres(position, np.ones(3), colour, (-1.5, 4.5, -1.5, 1.5), 0.05)
-    assert np.argmax(image[30, 30]) == 0 and np.argmax(image[30, 90]) == 2
-    image = paint_spheres(np.zeros((1, 3)), np.ones(1), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.02)
-    assert np.sum(image[..., 1] == 0.0) * 0.02**2 == pytest.approx(np.pi, rel=0.01)
-    image = paint_spheres(np.zeros((1, 3)), np.full(1, 0.01), np.array([[1.0, 0.0, 0.0]]), (-2.0, 2.0, -2.0, 2.0), 0.5)
-    assert np.any(image[..., 1] == 0.0)
 
 
 # ---- figures of a table of runs ----

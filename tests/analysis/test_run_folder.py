@@ -2,7 +2,6 @@
 
 import io
 import json
-import re
 import zipfile
 
 import numpy as np
@@ -11,9 +10,6 @@ from refused import refused
 from written_runs import change_arrays, flip, unseal
 
 from analysis import summarise
-from analysis.figures.draw import figures_of
-from analysis.report.rows import row
-from analysis.report.text import long_text
 from analysis.runs.files import RunFolderError
 from analysis.runs.folder import open_run
 from analysis.runs.format import CHANNELS, COLLISION
@@ -71,21 +67,6 @@ def test_a_folder_of_format_1_is_read_and_lacks_nothing_else(folder):
     change_arrays(folder / "history.npz", connection=None)
     with pytest.raises(RunFolderError, match="lacks the array 'connection'"):
         open_run(folder)
-
-
-def test_a_kind_of_run_of_a_script_of_its_own(folder):
-    """What every run has is read and checked; its own series are read as they are."""
-    _change_record(folder, lambda r: r.update(kind="shrink"))
-    filling = np.linspace(0.1, 0.2, 201)
-    change_arrays(folder / "history.npz", d=None, v=None, contacts_between=None, depth=filling)
-    for file in (folder / "states").iterdir():
-        change_arrays(file, aggregate=np.array([0, 5]))
-    run = open_run(folder)
-    assert run.kind.name == "shrink" and np.array_equal(run.history["depth"], filling) and "d" not in run.history
-    assert list(run.start.aggregate) == [0, 5] and list(figures_of(run)) == ["energy"]
-    numbers = summarise(run)
-    assert numbers["energy_closure"] < 1e-9 and numbers["outcome"] is None and numbers["d_max"] is None
-    assert re.search(r"final_depth +0\.2 ", long_text(run, row(run, structure=False)))
 
 
 DAMAGE = {

@@ -9,7 +9,7 @@ import pytest
 from analysis.__main__ import main
 from analysis.runs import lock
 from analysis.runs.format import ENDED_FILE, HISTORY_FILE, RUN_FILE, STATES_FOLDER
-from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, progress_of, run_of, state
+from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, state
 
 NOW = 1_700_000_000.0
 
@@ -45,15 +45,6 @@ def test_what_ended_failed_or_was_stopped(tmp_path):
     (folder / "checkpoint").mkdir()
     found = state(folder)
     assert found.kind == WAITING and found.note == "stopped, has a checkpoint" and found.left == pytest.approx(200.0)
-
-
-def test_progress_is_a_fraction_and_damaged_folders_have_a_state(tmp_path):
-    for time, progress in ((np.nan, 0.0), (-1.0, 0.0), (7.0, 1.0)):
-        folder = run_folder(tmp_path / str(time), "running", time)
-        assert progress_of(folder, run_of(folder)) == progress
-    for content in ("[]", "{", '{"derived": {"steps": "x"}, "wallTime": "x", "outcome": 3}'):
-        (folder / RUN_FILE).write_text(content)
-        assert progress_of(folder, run_of(folder)) == 0.0 and state(folder).kind == WAITING
 
 
 def test_the_command_lists_a_folder_of_runs(tmp_path, capsys):

@@ -106,19 +106,6 @@ TRUTH = a24.Aggregates(MODULI[0], 1.0 / MODULI[1], OFFSET / RADIUS, FILLING * DE
 VELOCITIES = [10 ** (0.1 * i) for i in (1, 3, 5, 7)]
 
 
-def rows_of(model, scatter, sizes=(40.0, 80.0)):
-    """Rows whose d_max and t_max are a model's, with a relative scatter whose mean over the pairs is 0."""
-    random, found = np.random.default_rng(0), []
-    for size in sizes:
-        for velocity in VELOCITIES:
-            d, t = model.at(size, velocity)
-            away = scatter * random.normal(size=(2, 6))
-            away -= away.mean(axis=1, keepdims=True)
-            values = {"filling": FILLING, "radius": size, "velocity": velocity, "pair": np.arange(6) + size}
-            found.append(pandas.DataFrame({**values, "d": d + size * away[0], "t": t * (1 + away[1])}))
-    return pandas.concat(found, ignore_index=True)
-
-
 def test_the_truth_comes_out_of_made_runs(tmp_path):
     """Three sizes at A24's velocity, four velocities at R = 80 r, four pairs that scatter by 2 %, but not in the mean.
     Pairs 1 and 2 of R = 40 r with drag too, which lets them go 5 and 4 % deeper."""
@@ -146,20 +133,6 @@ def test_the_truth_comes_out_of_made_runs(tmp_path):
     change = beside(mean("d"), a24.once(where(runs, viscoelasticTime=3e-12)), forty)
     assert change.value == pytest.approx(0.045 * (TRUTH.at(40.0, a24.VELOCITY)[0] + 2 * TRUTH.offset), rel=0.02)
     assert change.pairs == 2
-
-
-def test_lines_and_exponents_are_closed_forms():
-    assert a24.printed(0.4).returned(a24.VELOCITY) == pytest.approx(0.7676**2, abs=1e-4)
-    rows = where(rows_of(TRUTH, 0.01), velocity=VELOCITIES[2])
-    c1, c2, offset, ratio, at_60 = a24.size_line(rows)
-    assert (c1, -c2) == pytest.approx(tuple(np.polyfit(rows.radius, rows.d, 1))) and ratio == 2 * c1
-    assert at_60 == pytest.approx(60 * c1 - c2) and offset == pytest.approx(TRUTH.offset, abs=1e-6)
-    # A24 eqs 14, 18, with their numbers
-    line = pandas.DataFrame({"radius": [40.0, 80.0], "d": [0.0566 * 40 - 0.527, 0.0566 * 80 - 0.527]})
-    assert a24.size_line(line)[2] == pytest.approx(a24.PRINTED[0.4][2], abs=5e-4)
-    for compliance, stress, expected in ((0.0, 2e6, 0.0), (5e-8, 1e12, -0.2)):
-        model = a24.Aggregates(stress, compliance, a24.PRINTED[FILLING][2], 400.0)
-        assert a24.power_of(rows_of(model, 0.0, (80.0,)), "velocity") == pytest.approx(expected, abs=1e-6)
 
 
 # ---- the study of compressed aggregates beside CPE ones ----

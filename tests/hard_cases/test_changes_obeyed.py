@@ -6,16 +6,6 @@ from changes import *
 pytestmark = pytest.mark.in_yade
 
 
-def flying_together(**options):
-    """27 grains that collide, under the fused engine: five small steps each O.step."""
-    new_scene(0.1 * unit, "fused", subSteps=5, **options)
-    converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
-
-
-def close_to(energies, unit):
-    return pytest.approx(energies, rel=1e-9, abs=1e-12 * energies[unit])
-
-
 @pytest.mark.parametrize("mover", ["fused", "functors"])
 @pytest.mark.parametrize("by", [(0.3, 0, 0), (0, 0.3, 0), (0, 30.0, 0)])
 def test_a_touching_body_may_be_moved(mover, by):
@@ -111,7 +101,8 @@ def test_energies_that_were_cleared_count_anew():
     """From O.energy.clear() on, as the functors'; what was lost before stays away."""
 
     def end(cleared):
-        flying_together()
+        new_scene(0.1 * unit, "fused", subSteps=5)
+        converging(27, 1, [ice(viscoelasticTime=1e-12)], [1e-7])
         O.run(40, True)
         before = energies()
         if cleared:
@@ -124,4 +115,4 @@ def test_energies_that_were_cleared_count_anew():
     _, anew = end(True)
     assert before["slidingDissipation"] > 0
     lost = {name: straight[name] - (before[name] if name in LOST else 0) for name in CHANNELS}
-    assert anew == close_to(lost, "kinetic")
+    assert anew == pytest.approx(lost, rel=1e-9, abs=1e-12 * lost["kinetic"])

@@ -147,17 +147,3 @@ def test_contacts_flickering_at_pull_off(mover):
         grain((k * (2e-7 + 0.5 * c["pullOffOverlap"]), 0, 0), 1e-7, ice(), (random.uniform(-8, 8), 0, 0))
     assert closure(8000, 20) < 2e-3
     assert energies()["disconnection"] > 10 * 4 / 45 * c["pullOffForce"] * c["pullOffOverlap"]
-
-
-def test_below_the_limit_that_a_refusal_names_strong_drag_is_stable():
-    """T_vis = 100 ps at 0.9 of the step that the refusal names: a pair meets, sticks and comes to rest."""
-    new_scene(0.1 * unit, "fused")
-    for x, v in ((0, 0), (2.005e-7, -5)):
-        grain((x, 0, 0), 1e-7, ice(viscoelasticTime=100e-12), (v, 0, 0))
-    O.dt = 0.9 * float(refusal().split("below ")[1].split(" s")[0])
-    fused_engine()
-    O.run(3000, True)
-    a, b = (body.state for body in O.bodies)
-    overlap = 2e-7 - b.pos[0] + a.pos[0]
-    assert abs(b.vel[0] - a.vel[0]) < 0.1 and O.energy["drag"] > 0
-    assert 0 < overlap < 2 * constants(ice(), 1e-7)["equilibriumOverlap"]

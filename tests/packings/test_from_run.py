@@ -1,7 +1,6 @@
 """Packings out of runs: spheres cut out of a compression, the largest piece of a collision; contacts are at rest."""
 
 import os
-from dataclasses import replace
 
 import pytest
 from of_ice import ICE, OVERLAP
@@ -13,7 +12,6 @@ from written_runs import PAIR, cubic_lattice, losing, record, state_arrays, writ
 from yade_scripts import packings
 from yade_scripts.packings.files import packing_from_file
 from yade_scripts.packings.from_run import CutParameters, PeriodicState, cut, largest_piece_of_run, turned
-from yade_scripts.parameters import ParameterError
 
 
 def pressed_lattice(noise=0.0):
@@ -41,20 +39,6 @@ def test_contacts_come_to_rest_by_a_small_motion(noise):
     assert packing.parameters["filling"] == pytest.approx(packing.grains / 6**3)
     assert packings.extent(packing) < 6.8e-7
     assert len(packings.contacts(packing)) > 2 * packing.grains
-
-
-def test_between_walls_the_sphere_is_too():
-    """The layer fills a third of its cell."""
-    state = pressed_lattice()
-    edge = state.cell_size[2]
-    walls = np.array([-1.0, 7.0]) * edge / 8
-    layer = replace(state, cell_size=state.cell_size * [1, 1, 3], axis=2, walls=walls)
-    for seed in range(8):
-        given = CutParameters.parse({"radius": 7, "seed": seed})
-        between, free = (cut(own, given).parameters["filling"] for own in (layer, state))
-        assert between > 0.9 * free
-    with pytest.raises(ParameterError, match="^radius = 9: a larger sphere than the space between the walls holds"):
-        cut(layer, CutParameters.parse({"radius": 9}))
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Of several starts one has a run folder; whether a run is under way is read from its folder on every machine."""
+"""One start has a run folder; whether a run is under way is read from its folder on every machine."""
 
 import json
 import os
@@ -92,31 +92,3 @@ def test_a_job_that_is_begun_anew_takes_its_own_folder_over(tmp_path, monkeypatc
     assert under_way(folder)
     monkeypatch.setenv("SLURM_RESTART_COUNT", "1")
     assert under_way(folder) is None
-
-
-def test_of_many_starts_one_has_the_folder_of_a_killed_run(tmp_path):
-    path = left_by(tmp_path / "run", Lock(*lock.this_machine(), 1))
-    ready, go = os.pipe()
-    starters = []
-    for _ in range(6):
-        starters.append(os.fork())
-        if starters[-1] == 0:
-            os.close(go)
-            os.read(ready, 1)  # ends when the other side closes
-            _start(path)
-    os.close(ready)
-    os.close(go)
-    codes = [os.waitstatus_to_exitcode(os.waitpid(starter, 0)[1]) for starter in starters]
-    assert codes.count(0) >= 1 and set(codes) <= {0, 1}
-    assert codes.index(0) == starters.index(read_lock(path).pid) or codes.count(0) > 1  # one after another's end
-
-
-def _start(path):
-    """Exit status 0 for who has the folder, and is killed without an end; 1 for the others, 2 for anything else."""
-    try:
-        RunFolder(path)
-        os._exit(0)
-    except InputError:
-        os._exit(1)
-    finally:
-        os._exit(2)
