@@ -15,6 +15,7 @@
 
 #ifdef __CUDACC__
 #define GPU __device__
+#define RARE __noinline__ // out of the way of what every step does, whose registers it would take
 #define EACH(i, n) for (int i = int(threadIdx.x), i##End = (n); i < i##End; i += int(blockDim.x))
 #define BARRIER() __syncthreads()
 #define FIRST if (threadIdx.x == 0)
@@ -28,6 +29,7 @@
 #undef inline
 #else
 #define GPU
+#define RARE
 #define EACH(i, n) for (int i = 0, i##End = (n); i < i##End; ++i)
 #define BARRIER()
 #define FIRST

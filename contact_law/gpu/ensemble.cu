@@ -1,10 +1,13 @@
 /* Many collisions side by side, a block of threads each: the library that yade_scripts/run/ensemble.py calls. nvcc compiles it for a GPU; g++ (-x c++) for
  * processors, where a thread takes one collision after another. */
 #include "step.hpp"
-#include <cstdio>
+#ifndef __CUDACC__
+#include <omp.h>
+#endif
 #include <cstring>
 #include <memory>
 #include <new>
+#include <numeric>
 
 namespace contact_law {
 namespace gpu {
@@ -16,10 +19,15 @@ namespace gpu {
 		GPU void runAny(Collision& c, long long steps)
 		{
 			if (c.mechanisms == AllSprings)
-				run<AllSprings>(c, steps);
+				c.limit == LimitRule::Held ? run<AllSprings, LimitRule::Held>(c, steps) : run<AllSprings, LimitRule::Cut>(c, steps);
 			else
-				run<Everything>(c, steps);
+				c.limit == LimitRule::Held ? run<Everything, LimitRule::Held>(c, steps) : run<Everything, LimitRule::Cut>(c, steps);
 		}
+
+		struct Task {
+			Collision* collision; // in the device's memory
+			long long steps;
+		};
 
 		// ---- the two back ends ----
 
@@ -45,16 +53,16 @@ namespace gpu {
 		{
 			return succeeded(cudaMemcpy(to, from.data, size, cudaMemcpyDeviceToHost));
 		}
-		__global__ void __launch_bounds__(mostThreads, blocksSideBySide) runAll(Collision* const* collisions, long long steps)
+		__global__ void __launch_bounds__(mostThreads, blocksSideBySide) runAll(const Task* tasks)
 		{
-			runAny(*collisions[blockIdx.x], steps);
+			runAny(*tasks[blockIdx.x].collision, tasks[blockIdx.x].steps);
 		}
-		bool launch(const std::vector<Collision*>& collisions, long long steps)
+		bool launch(const std::vector<Task>& tasks)
 		{
-			const std::size_t size = collisions.size() * sizeof(Collision*);
+			const std::size_t size = tasks.size() * sizeof(Task);
 			Memory list(size);
-			if (!upload(list, collisions.data(), size)) return false;
-			runAll<<<int(collisions.size()), mostThreads>>>(reinterpret_cast<Collision* const*>(list.data), steps);
+			if (!upload(list, tasks.data(), size)) return false;
+			runAll<<<int(tasks.size()), mostThreads>>>(reinterpret_cast<const Task*>(list.data));
 			return succeeded(cudaGetLastError()) && succeeded(cudaDeviceSynchronize());
 		}
 		std::string deviceName()
@@ -76,11 +84,12 @@ namespace gpu {
 		};
 		bool upload(Memory& to, const void* from, std::size_t size) { return std::memcpy(to.data, from, size); }
 		bool download(void* to, const Memory& from, std::size_t size) { return std::memcpy(to, from.data, size); }
-		bool launch(const std::vector<Collision*>& collisions, long long steps)
+		bool launch(const std::vector<Task>& tasks)
 		{
-#pragma omp parallel for schedule(dynamic, 1)
-			for (std::size_t k = 0; k < collisions.size(); ++k)
-				runAny(*collisions[k], steps);
+			const int most = int(std::min<std::size_t>(tasks.size(), omp_get_max_threads()));
+#pragma omp parallel for schedule(dynamic, 1) num_threads(most)
+			for (const Task& task : tasks)
+				runAny(*task.collision, task.steps);
 			return true;
 		}
 		std::string deviceName() { return "processor"; }
@@ -191,13 +200,17 @@ void* collision_start(const CollisionInput* given)
 
 void collision_end(void* collision) { delete static_cast<Held*>(collision); }
 
-// So many steps of each of them, or as many as are left.
-int ensemble_run(void* const* collisions, int count, long long steps)
+// So many steps of each, or as many as it has left: those with most work (steps times slots) first, since the last to end are alone.
+int ensemble_run(void* const* collisions, int count, const long long* steps)
 {
-	std::vector<Collision*> all;
-	for (int k = 0; k < count; ++k)
-		all.push_back(reinterpret_cast<Collision*>(static_cast<Held*>(collisions[k])->device.data));
-	return launch(all, steps);
+	std::vector<int> order(count);
+	std::iota(order.begin(), order.end(), 0);
+	const auto work = [&](int k) { return steps[k] * static_cast<Held*>(collisions[k])->head().slots; };
+	std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return work(a) > work(b); });
+	std::vector<Task> tasks;
+	for (const int k : order)
+		tasks.push_back({ reinterpret_cast<Collision*>(static_cast<Held*>(collisions[k])->device.data), steps[k] });
+	return launch(tasks);
 }
 
 // Where a collision is, in numbers: steps made, steps left, samples, slots, failure.

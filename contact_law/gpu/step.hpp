@@ -57,45 +57,82 @@ namespace gpu {
 		sums.between += c.aggregate[c.first[slot]] != c.aggregate[c.second[slot]];
 	}
 
-	// One slot through the step that has led to the grains' positions.
-	template <unsigned mechanisms> GPU void bringOn(Collision& c, int slot, double dt, bool sampled, Sums& sums)
+	GPU RARE inline void quieten(Collision& c, int slot)
 	{
-		if (c.state[slot] == Unused) return;
-		if (c.state[slot] == LastKick) {
-			const Vector none { 0, 0, 0 };
-			c.force.set(slot, none), c.torque1.set(slot, none), c.torque2.set(slot, none);
-			c.forceBefore.set(slot, none), c.torqueBefore1.set(slot, none), c.torqueBefore2.set(slot, none);
-			c.state[slot] = Unused;
-			return;
+		const Vector none { 0, 0, 0 };
+		c.force.set(slot, none), c.torque1.set(slot, none), c.torque2.set(slot, none);
+		c.forceBefore.set(slot, none), c.torqueBefore1.set(slot, none), c.torqueBefore2.set(slot, none);
+		c.state[slot] = Unused;
+	}
+
+	GPU inline ContactHistory<double> historyOf(const Collision& c, int slot)
+	{
+		return { { c.pointer1[slot], c.pointer2[slot] }, c.twist[slot] };
+	}
+
+	// A bond through the step that has led to the grains' positions.
+	template <unsigned mechanisms> GPU RARE void bringBondOn(Collision& c, int slot, double dt, bool sampled, Sums& sums)
+	{
+		const ContactMotion m = motionOf(c, c.first[slot], c.second[slot], dt);
+		const BondConstants<double>& bond = bondOf(c, slot);
+		ContactHistory<double> h = historyOf(c, slot);
+		const ContactBefore before = aStepAgo(bond, c.rest[slot], m.separation - m.dt * m.velocity, h);
+		turnPointers(h, m);
+		const BondStepResult r = bondStep<mechanisms>(bond, constantsOf(c, slot), m, before, c.rest[slot], h);
+		if (!r.bonded) {
+			c.state[slot] = r.contact.touching ? Touching : LastKick;
+			sums.brokenBonds[r.mode] += 1;
 		}
-		constexpr bool drag = bool(mechanisms & Drag);
-		const int i = c.first[slot], j = c.second[slot];
-		const ContactMotion m = motionOf(c, i, j, dt);
-		ContactHistory<double> h { { c.pointer1[slot], c.pointer2[slot] }, c.twist[slot] };
-		if (c.state[slot] == Bonded) {
-			const ContactBefore before = aStepAgo(bondOf(c, slot), c.rest[slot], m.separation - m.dt * m.velocity, h);
-			turnPointers(h, m);
-			const BondStepResult r = bondStep<mechanisms>(bondOf(c, slot), constantsOf(c, slot), m, before, c.rest[slot], h);
-			if (!r.bonded) {
-				c.state[slot] = r.contact.touching ? Touching : LastKick;
-				sums.brokenBonds[r.mode] += 1;
-			}
-			book(c, slot, m, r.contact, h, drag, sampled, sums);
-			return;
-		}
+		book(c, slot, m, r.contact, h, bool(mechanisms & Drag), sampled, sums);
+	}
+
+	// Likewise a contact, as it was a step ago.
+	template <unsigned mechanisms>
+	GPU inline ContactBefore beforeOf(const Collision& c, int slot, const ContactMotion& m, const ContactHistory<double>& h)
+	{
 		const PairConstants<double>& constants = constantsOf(c, slot);
 		ContactBefore before = aStepAgo(constants, constants.radius1 + constants.radius2, m.separation - m.dt * m.velocity, h);
-		if constexpr (drag) {
-			before.velocity = c.velocityBefore[i] - c.velocityBefore[j];
+		if constexpr (bool(mechanisms & Drag)) {
+			before.velocity = c.velocityBefore[c.first[slot]] - c.velocityBefore[c.second[slot]];
 			before.drag = c.dragBefore[slot];
 		}
+		return before;
+	}
+	template <unsigned mechanisms, LimitRule limit>
+	GPU inline void stepContact(Collision& c, int slot, const ContactMotion& m, bool sampled, Sums& sums)
+	{
+		ContactHistory<double> h = historyOf(c, slot);
+		const ContactBefore before = beforeOf<mechanisms>(c, slot, m, h);
 		turnPointers(h, m);
-		const ContactStepResult r = contactStep<mechanisms>(constants, c.limit, m, before, h);
+		const ContactStepResult r = contactStep<mechanisms>(constantsOf(c, slot), limit, m, before, h);
 		if (!r.touching) {
 			c.state[slot] = LastKick;
 			sums.broken += 1;
 		}
-		book(c, slot, m, r, h, drag, sampled, sums);
+		book(c, slot, m, r, h, bool(mechanisms & Drag), sampled, sums);
+	}
+	template <unsigned mechanisms, LimitRule limit>
+	GPU RARE void breakContact(Collision& c, int slot, const ContactMotion& m, bool sampled, Sums& sums)
+	{
+		stepContact<mechanisms, limit>(c, slot, m, sampled, sums);
+	}
+	template <unsigned mechanisms, LimitRule limit>
+	GPU inline void bringContactOn(Collision& c, int slot, double dt, bool sampled, Sums& sums)
+	{
+		const ContactMotion m = motionOf(c, c.first[slot], c.second[slot], dt);
+		const PairConstants<double>& constants = constantsOf(c, slot);
+		if (normal::beyondPullOff(constants, geometryOf(m.separation, constants.radius1 + constants.radius2)))
+			breakContact<mechanisms, limit>(c, slot, m, sampled, sums);
+		else
+			stepContact<mechanisms, limit>(c, slot, m, sampled, sums);
+	}
+
+	template <unsigned mechanisms, LimitRule limit> GPU inline void bringOn(Collision& c, int slot, double dt, bool sampled, Sums& sums)
+	{
+		const unsigned char state = c.state[slot];
+		if (state == Touching) bringContactOn<mechanisms, limit>(c, slot, dt, sampled, sums);
+		if (state == Bonded) bringBondOn<mechanisms>(c, slot, dt, sampled, sums);
+		if (state == LastKick) quieten(c, slot);
 	}
 
 	// ---- births ----
@@ -143,7 +180,7 @@ namespace gpu {
 	}
 
 	// Contacts that form get the next slots, in the order of the pairs.
-	template <unsigned mechanisms> GPU void form(Collision& c, double dt, bool sampled, Sums& sums)
+	template <unsigned mechanisms, LimitRule limit> GPU RARE void form(Collision& c, double dt, bool sampled, Sums& sums)
 	{
 		const int before = c.slots;
 		const int more = addUp(
@@ -156,7 +193,7 @@ namespace gpu {
 			        deriveConstants(c, slot);
 			        const ContactMotion m = motionOf(c, i, j, dt);
 			        ContactHistory<double> h {};
-			        const ContactStepResult r = contactStep<mechanisms>(constantsOf(c, slot), c.limit, m, ContactBefore {}, h);
+			        const ContactStepResult r = contactStep<mechanisms>(constantsOf(c, slot), limit, m, ContactBefore {}, h);
 			        if (!r.touching) return;
 			        c.state[slot] = Touching;
 			        sums.formed += 1;
@@ -250,7 +287,7 @@ namespace gpu {
 		BARRIER();
 	}
 
-	GPU inline void makeLists(Collision& c)
+	GPU RARE inline void makeLists(Collision& c)
 	{
 		closeGaps(c);
 		listSlotsOfGrains(c);
@@ -297,14 +334,14 @@ namespace gpu {
 		BARRIER();
 	}
 
-	template <unsigned mechanisms> GPU void addForces(Collision& c, double dt, bool sampled)
+	template <unsigned mechanisms, LimitRule limit> GPU void addForces(Collision& c, double dt, bool sampled)
 	{
 		Sums& sums = c.sums[thread()];
 		if (sampled) sums.stored = { 0, 0, 0, 0 }, sums.kinetic = sums.contacts = sums.between = 0;
-		EACH(slot, c.slots) bringOn<mechanisms>(c, slot, dt, sampled, sums);
+		EACH(slot, c.slots) bringOn<mechanisms, limit>(c, slot, dt, sampled, sums);
 		EACH(pair, c.pairs) if (isForming(c, pair)) c.born = true;
 		BARRIER();
-		if (c.born) form<mechanisms>(c, dt, sampled, sums);
+		if (c.born) form<mechanisms, limit>(c, dt, sampled, sums);
 	}
 
 	// ---- samples ----
@@ -328,7 +365,7 @@ namespace gpu {
 	}
 
 	// Velocities of the positions' moment, and a row of the history.
-	GPU inline void takeSample(Collision& c)
+	GPU RARE inline void takeSample(Collision& c)
 	{
 		Sums& sums = c.sums[thread()];
 		sums.right = sums.left = { 0, 0, 0 };
@@ -362,7 +399,7 @@ namespace gpu {
 	// ---- a run ----
 
 	// Contacts (bonds) of the pairs in its slots, without strain; forces, and velocities half a step back.
-	template <unsigned mechanisms> GPU void begin(Collision& c)
+	template <unsigned mechanisms, LimitRule limit> GPU RARE void begin(Collision& c)
 	{
 		EACH(slot, c.slots)
 		{
@@ -377,7 +414,7 @@ namespace gpu {
 		BARRIER();
 		makeLists(c);
 		if (c.failure != Failure::None) return;
-		addForces<mechanisms>(c, 0, true);
+		addForces<mechanisms, limit>(c, 0, true);
 		EACH(i, c.grains)
 		{
 			kick(c, i, -0.5 * c.dt);
@@ -387,9 +424,9 @@ namespace gpu {
 		takeSample(c);
 	}
 
-	template <unsigned mechanisms> GPU void run(Collision& c, long long steps)
+	template <unsigned mechanisms, LimitRule limit> GPU RARE void run(Collision& c, long long steps)
 	{
-		if (c.step == 0 && c.samples == 0) begin<mechanisms>(c);
+		if (c.step == 0 && c.samples == 0) begin<mechanisms, limit>(c);
 		for (long long made = 0; made < steps && c.stepsLeft > 0 && c.failure == Failure::None; ++made) {
 			move<mechanisms>(c);
 			FIRST
@@ -401,7 +438,7 @@ namespace gpu {
 			BARRIER();
 			if (c.failure != Failure::None) return;
 			const bool sampled = c.step % c.interval == 0 || c.stepsLeft == 0;
-			addForces<mechanisms>(c, c.dt, sampled);
+			addForces<mechanisms, limit>(c, c.dt, sampled);
 			if (sampled) takeSample(c);
 		}
 	}

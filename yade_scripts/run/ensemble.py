@@ -76,14 +76,15 @@ class Library:
         return bool(self._of.ensemble_runs(mechanisms))
 
     def run(self, collisions, steps):
-        """Bring collisions on by so many steps, or to their ends.
+        """Bring collisions on by so many steps (of all, or a list with those of each), or to their ends.
 
         Raises
         ------
         DeviceError
         """
         handles = (ctypes.c_void_p * len(collisions))(*(each.handle.value for each in collisions))
-        self.require(self._of.ensemble_run(handles, len(collisions), ctypes.c_longlong(steps)))
+        each = np.ascontiguousarray(np.broadcast_to(steps, len(collisions)), dtype=np.int64)
+        self.require(self._of.ensemble_run(handles, len(collisions), _pointer(each)))
 
     def require(self, result):
         """`result` of a call; raises DeviceError if it is none."""
