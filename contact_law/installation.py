@@ -4,15 +4,14 @@
     python3 contact_law/installation.py uninstall PREFIX
 
 PREFIX/lib/contact_law holds the packages contact_law, analysis and yade_scripts, and the plugin in an overlay that
-YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes every Python 3 of the system find the
-packages whose folders of modules lie in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
+YADE_PREFIX may name. PREFIX/bin holds the commands. A line in a .pth file makes /usr/bin/python3 find the packages if
+it looks for modules in PREFIX: ~/.local, /usr/local, or PYTHONUSERBASE.
 PREFIX/lib/contact_law/installed.json lists all files, before the first is there: these go again, and no others.
 Exit status: 0, or 2 with one line on stderr.
 """
 
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -38,8 +37,9 @@ COPIED = {
     "yade_scripts": ("**/*.py", "**/*.table", "studies/*.txt"),
 }
 
+PYTHON = "/usr/bin/python3"
 # PYTHONPATH, not the folder that one stands in, says which packages these are.
-_PYTHON = "PYTHONPATH={folder} exec /usr/bin/python3 -P "
+_PYTHON = f"PYTHONPATH={{folder}} exec {PYTHON} -P "
 COMMANDS = {
     "dust-collide": "exec yade -n -x {folder}/yade_scripts/collide.py",
     "dust-compress": "exec yade -n -x {folder}/yade_scripts/compress.py",
@@ -55,19 +55,18 @@ class CannotInstall(Exception):
 
 def install(prefix):
     """Copy everything, replacing an earlier installation; returns the lines that say what one has now."""
-    folder, paths = prefix / FOLDER, module_folders(prefix)
+    folder, modules = prefix / FOLDER, module_folder(prefix)
     if not list((TOP / "build").glob("lib/*/yade-double/libcontact_law.so")):
         raise CannotInstall(f"{TOP / 'build'}: holds no plugin; must be built before (make)")
-    copied = {folder / name: TOP / name for name in _plan()}
-    written = {path / "contact_law.pth": f"{folder}\n" for path in paths}
+    copied = {folder / file.relative_to(TOP): file for file in _plan()}
+    written = {folder / "analysis/COMMIT": commit() + "\n"}
+    if modules:
+        written[modules / "contact_law.pth"] = f"{folder}\n"
     for name, line in COMMANDS.items():
         written[prefix / "bin" / name] = f'#!/bin/sh\n{line.format(folder=shell_line([folder]))} "$@"\n'
-    written[folder / "analysis/COMMIT"] = commit() + "\n"
 
     earlier = _listed(prefix) if os.path.lexists(folder) else []
     for path in (*copied, *written):
-        if not _is_within(prefix, path):
-            raise CannotInstall(f"{path.parent}: leads out of {prefix}; must be within")
         if os.path.lexists(path) and path not in earlier:
             raise CannotInstall(f"{path}: exists and is not part of an installation of contact_law; must be moved away")
     if earlier:
@@ -81,32 +80,27 @@ def install(prefix):
     for path, text in written.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-        if path.name in COMMANDS:
-            path.chmod(0o755)
+        path.chmod(0o755 if path.name in COMMANDS else 0o644)
 
-    lines = [
-        f"contact_law {version_text()} is installed in {folder}",
-        f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}",
-    ]
+    lines = [f"contact_law {version_text()} is installed in {folder}"]
+    lines.append(f"commands in {prefix / 'bin'}: {' '.join(COMMANDS)}")
     if str(prefix / "bin") not in os.environ.get("PATH", "").split(os.pathsep):
         lines.append(f"to call them by name: PATH={shell_line([prefix / 'bin'])}:$PATH")
-    if not paths:
-        lines.append(f"no Python looks for modules in {prefix}: PYTHONPATH={shell_line([folder])} makes it find them")
+    if not modules:
+        lines.append(f"{PYTHON} looks for no modules in {prefix}: PYTHONPATH={shell_line([folder])} makes it find them")
     return lines
 
 
 def uninstall(prefix):
     """Remove what install() has put there, what Python has made of it, and the folders that are empty then."""
-    listed = [path for path in _listed(prefix) if _is_within(prefix, path)]
+    listed = _listed(prefix)
     for path in listed:
-        path.unlink(missing_ok=True)
-        for cache in path.parent.glob(f"__pycache__/{path.stem}.*.pyc"):
-            if _is_within(prefix, cache):
-                cache.unlink()
+        for file in (path, *path.parent.glob(f"__pycache__/{path.stem}.*.pyc")):
+            file.unlink(missing_ok=True)
     (prefix / FOLDER / LIST).unlink()
     folders = {folder for path in listed for folder in (path.parent / "__pycache__", *path.parents)}
     for folder in sorted(folders, reverse=True):
-        if prefix in folder.parents and _is_within(prefix, folder) and folder.is_dir() and not any(folder.iterdir()):
+        if prefix in folder.parents and folder.is_dir() and not any(folder.iterdir()):
             folder.rmdir()
     return [f"contact_law is removed from {prefix}"]
 
@@ -117,44 +111,27 @@ def _listed(prefix):
     if not os.path.lexists(file.parent):
         raise CannotInstall(f"{file.parent}: no installation there")
     try:
-        if not _is_within(prefix, file):
-            raise ValueError
         listed = json.loads(file.read_text())
-        return [
-            prefix / (entry if isinstance(entry, str) else entry[0]) for entry in listed
-        ]  # up to 0.6 each with a sum
+        return [prefix / (entry if isinstance(entry, str) else entry[0]) for entry in listed]  # to 0.6 with a sum each
     except (OSError, ValueError, TypeError, LookupError):
         raise CannotInstall(f"{file}: is no list of installed files; {file.parent} must be moved away") from None
 
 
-def _is_within(prefix, path):
-    """Whether a path leads to the prefix, not through .. or a link out of it."""
-    return Path(os.path.realpath(path.parent)).is_relative_to(os.path.realpath(prefix)) and path.name not in ("", "..")
-
-
-def module_folders(prefix):
-    """The folders in PREFIX in which a Python 3 of PATH or of Debian looks for modules (and reads .pth files)."""
-    folders = [*map(Path, os.environ.get("PATH", "").split(os.pathsep)), Path("/usr/bin")]
-    pythons = {os.path.realpath(file) for folder in folders for file in folder.glob("python3*")}
+def module_folder(prefix):
+    """The folder in PREFIX in which Debian's Python looks for modules (and reads .pth files), or None."""
     ask = "import json, site; print(json.dumps([site.getusersitepackages(), *site.getsitepackages()]))"
-    found = []
-    for python in sorted(python for python in pythons if re.fullmatch(r"python3(\.\d+)?", os.path.basename(python))):
-        answer = subprocess.run([python, "-c", ask], capture_output=True, text=True)
-        if answer.returncode == 0:
-            inside = [Path(path) for path in json.loads(answer.stdout) if prefix in Path(path).parents]
-            found += [path for path in inside[:1] if path not in found]
-    return found
+    folders = map(Path, json.loads(subprocess.run([PYTHON, "-c", ask], stdout=subprocess.PIPE, check=True).stdout))
+    return next((folder for folder in folders if prefix in folder.parents), None)
 
 
 def _plan():
-    """Paths from the checkout's top of what is copied: files, and links to YADE's own files."""
-    files = [file for package, patterns in COPIED.items() for each in patterns for file in (TOP / package).glob(each)]
-    files += [TOP / "build" / name for name in ("yade.list", "commit.list")]
+    """What is copied of the checkout: files, and links to YADE's own files."""
+    yield from (file for name, patterns in COPIED.items() for each in patterns for file in (TOP / name).glob(each))
+    yield from (TOP / "build" / name for name in ("yade.list", "commit.list"))
     for part in ("lib", "bin"):
         for at, folders, names in os.walk(TOP / "build" / part):
-            files += [Path(at) / name for name in names]
-            files += [Path(at) / name for name in folders if (Path(at) / name).is_symlink()]
-    return [str(file.relative_to(TOP)) for file in files]
+            yield from (Path(at) / name for name in names)
+            yield from (Path(at) / name for name in folders if (Path(at) / name).is_symlink())
 
 
 def main(arguments):

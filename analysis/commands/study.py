@@ -1,6 +1,5 @@
 """python3 -m analysis study [NAME RUNS... [--figures FOLDER] [--page FILE] [--json | --format FORMAT]]"""
 
-import argparse
 import json
 import os
 import tempfile
@@ -8,17 +7,13 @@ from contextlib import nullcontext
 from pathlib import Path
 
 from ..printable import printable, printable_lines
-from . import FAILED, complain
-
-FORMATS = ("text", "markdown", "json", "csv")
+from . import FAILED, add_command, complain, with_ending
 
 
 def add_parsers(commands):
     """Add the command to argparse's subparsers."""
-    parser = commands.add_parser(
-        "study",
-        help="figures and numbers of a study from many runs, beside the paper's; without a name: list the studies",
-    )
+    about = "figures and numbers of a study from many runs, beside the paper's; without a name: list the studies"
+    parser = add_command(commands, study, about)
     parser.add_argument("name", nargs="?", metavar="NAME", help="a study, or a file NAME.py of one's own")
     parser.add_argument(
         "runs",
@@ -32,46 +27,41 @@ def add_parsers(commands):
         metavar="FOLDER",
         help="write runs.csv (a row a run), comparison.csv and the figures there, and fill the table of its README.md",
     )
-    parser.add_argument("--page", metavar="FILE", type=_page_file, help="write one HTML page that can be sent")
+    parser.add_argument(
+        "--page", metavar="FILE", type=with_ending(".html"), help="write one HTML page that can be sent"
+    )
     output = parser.add_mutually_exclusive_group()
-    output.add_argument("--format", choices=FORMATS, default="text", help="what to print (csv: a row a run)")
+    output.add_argument(
+        "--format", choices=("text", "json", "csv"), default="text", help="what to print (csv: a row a run)"
+    )
     output.add_argument("--json", action="store_const", const="json", dest="format", help="the same as --format json")
-    parser.set_defaults(command=run)
 
 
-def _page_file(text):
-    if Path(text).suffix != ".html":
-        raise argparse.ArgumentTypeError(f"{text}: must end in .html")
-    return Path(text)
-
-
-def run(options):
-    """Exit status: 0, or 2 when a path or run could not be read or nothing was left to analyse."""
+def study(options):
     # pandas and scipy take a moment to load, and the parser does without them.
     from ..studies.gather import gather
-    from ..studies.study import NAMES, find, own_errors
+    from ..studies.study import NAMES, find
 
     if not options.name:
         for name in NAMES:
             print(f"{name:<13}  {find(name).title}")
         return 0
-    study = find(options.name)
+    chosen = find(options.name)
     if not options.runs:
         complain(f"study {options.name}: no runs given; must be run folders, folders of them, or a runs.csv")
         return FAILED
-    _require_places(options, study)
-    found = gather(study, options.runs)
+    _require_places(options, chosen)
+    found = gather(chosen, options.runs)
     for line in (*found.notes, *found.problems):
         complain(line)
     if found.table is None:
         if not found.problems:
-            complain(f"no run of {study.scene.name} to analyse")
+            complain(f"no run of {chosen.scene.name} to analyse")
         return FAILED
-    runs = study.runs(found.table)
-    with own_errors(study.file):
-        rows = [row for row in study.rows(runs) if row.printed or row.word != "not run"]
-    written = _write(options, study, found, runs, rows) if options.figures or options.page else None
-    text = _text(options.format, study, found, rows).rstrip("\n")
+    runs = chosen.runs(found.table)
+    rows = [row for row in chosen.rows(runs) if row.printed or row.word != "not run"]
+    written = _write(options, chosen, found, runs, rows) if options.figures or options.page else None
+    text = _text(options.format, chosen, found, rows).rstrip("\n")
     print(text if options.format == "csv" else printable_lines(text))
     if written and options.format == "text":
         print(printable(f"written: {written}"))
@@ -99,12 +89,9 @@ def _is_only_input(table, runs):
 
 def _text(kind, study, found, rows):
     from ..studies.comparison import counted, of_table, text_table
-    from ..studies.pages import table_of
 
     if kind == "csv":
         return found.csv(study)
-    if kind == "markdown":
-        return f"# {study.title}\n\n{study.question}\n\n{table_of(rows, study.independent)}"
     if kind == "json":
         records = json.loads(of_table(rows).to_json(orient="records", double_precision=15))
         answer = {"study": study.name, "runs": len(found.table), "rows": records}
@@ -116,9 +103,8 @@ def _write(options, study, found, runs, rows):
     """Write tables, figures and page, as far as they are wanted; what to open first."""
     from ..runs.collect import provenance_lines
     from ..runs.files import write_file
-    from ..studies.comparison import of_table
+    from ..studies.comparison import START, filled, html_page, of_table
     from ..studies.gather import TABLE_FILE
-    from ..studies.pages import START, filled, html_page
 
     with nullcontext(options.figures) if options.figures else tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
@@ -143,15 +129,13 @@ def _draw(study, runs, folder, readme):
     # matplotlib is slow to load, and the numbers do without it.
     from ..figures.style import save_small
     from ..progress import progress
-    from ..studies.study import own_errors
 
     drawn = []
-    with own_errors(study.file):
-        for name, caption, figure in progress(study.figures(runs), "drawing"):
-            file = folder / f"{name}.png"
-            if figure is None and file.exists():
-                complain(f"{file}: is of other runs; these have nothing to draw there")
-            elif figure is not None and (readme is None or file.name in readme):
-                save_small(figure, file)
-                drawn.append((caption, file))
+    for name, caption, figure in progress(study.figures(runs), "drawing"):
+        file = folder / f"{name}.png"
+        if figure is None and file.exists():
+            complain(f"{file}: is of other runs; these have nothing to draw there")
+        elif figure is not None and (readme is None or file.name in readme):
+            save_small(figure, file)
+            drawn.append((caption, file))
     return drawn

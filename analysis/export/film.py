@@ -10,7 +10,7 @@ from itertools import chain
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from ..figures.grain_colours import COLOURINGS, Patch, Range, on_scale
+from ..figures.grain_colours import COLOURINGS, Range, on_scale
 from ..figures.sphere_raster import paint_spheres
 from ..figures.style import NANO
 from ..progress import progress
@@ -97,14 +97,14 @@ def _frame(exported, axes, colours, legend, view, pixel):
 def _draw_legend(canvas, legend, x, y):
     """Patches or a scale in a row, from (x, y) [pixels] on."""
     for entry in legend:
-        if isinstance(entry, Patch):
-            canvas.ellipse((x, y + 4, x + 12, y + 16), fill=_rgb(entry.colour))
-            x = _write(canvas, entry.text, x + 18, y)
+        if "colour" in entry:
+            canvas.ellipse((x, y + 4, x + 12, y + 16), fill=_rgb(entry["colour"]))
+            x = _write(canvas, entry["text"], x + 18, y)
         else:
-            x = _write(canvas, entry.low, x, y) - 8
+            x = _write(canvas, entry["low"], x, y) - 8
             for k, colour in enumerate(on_scale(np.linspace(0, 1, 120))):
                 canvas.line((x + k, y + 4, x + k, y + 16), fill=_rgb(colour))
-            x = _write(canvas, entry.high, x + 128, y)
+            x = _write(canvas, entry["high"], x + 128, y)
 
 
 def _write(canvas, text, x, y):

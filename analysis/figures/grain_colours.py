@@ -23,24 +23,8 @@ _FAST = 99.0  # percentile of the speeds at which the scale ends
 
 
 @dataclass(frozen=True)
-class Patch:
-    """A colour (R, G, B) and what it means."""
-
-    colour: tuple
-    text: str
-
-
-@dataclass(frozen=True)
-class Scale:
-    """The colour scale from `low` to `high` (texts)."""
-
-    low: str
-    high: str
-
-
-@dataclass(frozen=True)
 class Colouring:
-    """title; colours(Exported, Range) -> (N, 3); legend(Range) -> [Patch or Scale]."""
+    """title; colours(Exported, Range) -> (N, 3); legend(Range) -> [patch() or scale()]."""
 
     title: str
     colours: Callable
@@ -72,6 +56,16 @@ def on_scale(shares):
     return np.stack([np.interp(shares, steps, channel) for channel in np.transpose(SCALE)], axis=-1)
 
 
+def patch(colour, text):
+    """Entry of a legend: a colour (R, G, B) and what it means."""
+    return {"colour": colour, "text": text}
+
+
+def scale(low, high):
+    """Entry of a legend: the colour scale from `low` to `high` (texts)."""
+    return {"low": low, "high": high}
+
+
 def _of_table(table, numbers, beyond=None):
     """Rows of a table of colours; numbers past its end: `beyond`, or from its beginning."""
     if beyond is None:
@@ -87,15 +81,15 @@ def _bonded(exported):
 
 def _aggregates(of):
     return [
-        Patch(AGGREGATE_COLOURS[k % len(AGGREGATE_COLOURS)], f"aggregate {k + 1}") for k in range(min(of.aggregates, 2))
+        patch(AGGREGATE_COLOURS[k % len(AGGREGATE_COLOURS)], f"aggregate {k + 1}") for k in range(min(of.aggregates, 2))
     ]
 
 
 def _pieces(of):
     return [
-        Patch(PIECES[0], "largest piece"),
-        *(Patch(c, f"{k}.") for k, c in enumerate(PIECES[1:], 2)),
-        Patch(GREY, "smaller"),
+        patch(PIECES[0], "largest piece"),
+        *(patch(c, f"{k}.") for k, c in enumerate(PIECES[1:], 2)),
+        patch(GREY, "smaller"),
     ]
 
 
@@ -104,17 +98,17 @@ COLOURINGS = {
     "contacts": Colouring(
         "contacts of the grain",
         lambda e, of: on_scale(e.coordination() / MOST_CONTACTS),
-        lambda of: [Scale("0", f"{MOST_CONTACTS} or more contacts")],
+        lambda of: [scale("0", f"{MOST_CONTACTS} or more contacts")],
     ),
     "speed": Colouring(
         "speed",
         lambda e, of: on_scale(_speed(e.state) / of.fastest),
-        lambda of: [Scale("0", f"{of.fastest:.3g} m/s past the centre of mass")],
+        lambda of: [scale("0", f"{of.fastest:.3g} m/s past the centre of mass")],
     ),
     "fragment": Colouring("fragment", lambda e, of: _of_table(PIECES, e.fragments(), GREY), _pieces),
     "bond": Colouring(
         "sintered bonds",
         lambda e, of: _of_table((GREY, BONDED), _bonded(e)),
-        lambda of: [Patch(BONDED, "sintered to a neighbour"), Patch(GREY, "not")],
+        lambda of: [patch(BONDED, "sintered to a neighbour"), patch(GREY, "not")],
     ),
 }

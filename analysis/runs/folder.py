@@ -7,7 +7,6 @@ import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -120,10 +119,6 @@ class RunFolder:
         lines = (f"{name}: {text}" for name, text in self._facts())
         folded = (textwrap.fill(line, WIDTH, initial_indent="  ", subsequent_indent="    ") for line in lines)
         return "\n".join([f"run {self.path}", *folded])
-
-    def _repr_html_(self):
-        rows = (f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in self._facts())
-        return f"<table><caption>run {escape(str(self.path))}</caption>{''.join(rows)}</table>"
 
     def _facts(self):
         """(name, text) of what a prompt shows."""

@@ -5,8 +5,7 @@
     columns.py     columns of runs.csv, and how a run folder fills them
     gather.py      from paths to one table of runs
     estimates.py   a number of a table of runs with its standard error
-    comparison.py  a paper's number beside it, in one of four words
+    comparison.py  a paper's number beside it, in one of four words; tables in pages, the page of a user's runs
     figures.py     curves of estimates, states of collisions
-    pages.py       tables in pages that a person has written, and the page of a user's runs
 
 `python3 -m analysis study NAME RUNS` runs one; analysis/STUDIES.md says how to write one."""

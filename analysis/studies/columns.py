@@ -1,15 +1,12 @@
-"""Columns of a table of runs with how a run folder fills them, and those that several studies have: grains, outcome,
-return, energy."""
+"""Columns of a table of runs with how a run folder fills them, and those that several studies have."""
 
 from dataclasses import astuple
 
 import numpy as np
 
-from ..measures.compression import first_compression, largest_return_speed
-from ..measures.structure import mean_coordination
 from ..runs.files import RunFolderError
-from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, same
-from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
+from ..runs.format import same
+from ..runs.ledger import closure
 from ..runs.measured import derived_constants, met, outcome_of_run
 from ..runs.table import Column
 from ..theory import GRAIN_RADIUS as RADII
@@ -61,7 +58,6 @@ def row_of(groups, run):
 
 VELOCITY = parameter("velocity", "m/s", "collision velocity")
 SEED = parameter("seed", "", "random seed of the pair of aggregates", "i")
-VISCOUS_TIME = parameter("viscoelasticTime", "s", "T_vis of the viscous drag")
 MATERIAL = parameter("material", "", "material of the grains", "O", "")
 GRAIN_RADIUS = constant("grain_radius", "m", "radius of a grain", "grainRadius")
 MET = one("met", "", "whether the aggregates touched", met, kind="b")
@@ -105,46 +101,9 @@ def grains_text(parameters, but=()):
     return parameters["material"] + (f" ({', '.join(others)})" if others else "")
 
 
-AT_MAXIMUM = "{}_at_maximum"  # the column of a channel's change from the start to t_max
-# Parameters of the collisions of Arakawa et al. (2024), but for the packing.
-HEAD_ON_ICE = {"impact": 0.0, "viscoelasticTime": 0.0, "neck": 0.0, "planar": 0, "limit": "held", "material": "ice"}
-HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
-
-
-def largest_compression(run):
-    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where
-    the aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
-    history = run.history
-    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
-    if maximum is None or not maximum.inside or not met(run):
-        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
-    if not initial_kinetic_energy(history) > 0:
-        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
-    return maximum, exceeded
-
-
 def _outcome(run, row):
     outcome, v = outcome_of_run(run), run.history["v"]
     return outcome.kind, outcome.restitution, float(np.nan_to_num(v[-1] / row["velocity"]) ** 2)
-
-
-def _return(run, row):
-    """NaN where the halves never part, or the record ends before their speed falls."""
-    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run)[0].time)
-    return [np.nan if value is None else value for value in found]
-
-
-def _changes(run, row):
-    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and
-    until the end, over K(0)."""
-    times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
-    parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
-    return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]
-
-
-def _channels_until(name, when, **more):
-    meaning = "{}, change from the start to {} (kinetic: what is left)"
-    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when), **more) for c in CHANNELS)
 
 
 OUTCOME = group(
@@ -155,22 +114,3 @@ OUTCOME = group(
 )
 _largest = lambda run: float(outcome_of_run(run).mass_fractions[0])
 LARGEST = one("largest_fraction", "", "fraction of the mass in the largest piece", _largest)
-_contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
-# What studies of compact aggregates have in common. Columns without gaps come last, so that a row that was cut short
-# is noticed.
-COMPACT = (
-    one("coordination", "", "mean number of contacts of a grain at the start", _contacts),
-    CLOSURE,
-    OUTCOME,
-    group(
-        _return,
-        Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
-        Column("return_time", "s", "its time", gaps=True, absent=np.nan),
-    ),
-    group(
-        _changes,
-        *_channels_until("{}_at_return", "return_time", gaps=True, absent=np.nan),
-        *_channels_until(AT_MAXIMUM, "t_max", absent=0.0),
-        *_channels_until("{}_at_end", "the end", absent=0.0),
-    ),
-)

@@ -6,14 +6,19 @@ from functools import partial
 
 import numpy as np
 
+from ..measures.compression import first_compression, largest_return_speed
 from ..measures.outcome import STICKING
+from ..measures.structure import mean_coordination
 from ..runs.collect import Scene
-from ..runs.format import LOST_CHANNELS
+from ..runs.files import RunFolderError
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, LOST_CHANNELS
+from ..runs.ledger import fractions_at, initial_kinetic_energy
+from ..runs.measured import met
 from ..theory import ICE
 from ..theory.aggregates import bcca_strength
 from ..theory.andrews import stress_if_rigid
 from . import columns
-from .columns import AT_MAXIMUM, Column, NotMeasured, grains_text, group, one
+from .columns import CLOSURE, OUTCOME, Column, NotMeasured, grains_text, group, one
 from .comparison import Row
 from .estimates import beside, ending, estimate, mean
 from .figures import curves
@@ -21,6 +26,66 @@ from .study import Study
 
 KINDS = ("compressed", "CPE")
 PLACE = ("of", "step", "nominal", "radius", "velocity")
+
+
+# ---- what this study and that of A24 have in common ----
+
+AT_MAXIMUM = "{}_at_maximum"  # the column of a channel's change from the start to t_max
+# Parameters of the collisions of Arakawa et al. (2024), but for the packing.
+HEAD_ON_ICE = {"impact": 0.0, "viscoelasticTime": 0.0, "neck": 0.0, "planar": 0, "limit": "held", "material": "ice"}
+HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
+
+
+def largest_compression(run):
+    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where
+    the aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
+    history = run.history
+    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
+    if maximum is None or not maximum.inside or not met(run):
+        raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
+    if not initial_kinetic_energy(history) > 0:
+        raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
+    return maximum, exceeded
+
+
+def _return(run, row):
+    """NaN where the halves never part, or the record ends before their speed falls."""
+    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run)[0].time)
+    return [np.nan if value is None else value for value in found]
+
+
+def _changes(run, row):
+    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and
+    until the end, over K(0)."""
+    times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
+    parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
+    return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]
+
+
+def _channels_until(name, when, **more):
+    meaning = "{}, change from the start to {} (kinetic: what is left)"
+    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when), **more) for c in CHANNELS)
+
+
+_contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
+COMPACT = (  # without gaps last, so that a row that was cut short is noticed
+    one("coordination", "", "mean number of contacts of a grain at the start", _contacts),
+    CLOSURE,
+    OUTCOME,
+    group(
+        _return,
+        Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
+        Column("return_time", "s", "its time", gaps=True, absent=np.nan),
+    ),
+    group(
+        _changes,
+        *_channels_until("{}_at_return", "return_time", gaps=True, absent=np.nan),
+        *_channels_until(AT_MAXIMUM, "t_max", absent=0.0),
+        *_channels_until("{}_at_end", "the end", absent=0.0),
+    ),
+)
+
+# ---- what is this study's own ----
 
 
 def _packings(run, row):
@@ -39,7 +104,7 @@ def _packings(run, row):
 def _compression(run, row):
     """From the first touch on."""
     d, time = (float(run.history[name][np.argmax(run.history["contacts_between"] > 0)]) for name in ("d", "time"))
-    maximum, _ = columns.largest_compression(run)
+    maximum, _ = largest_compression(run)
     return maximum.length - d, maximum.time - time
 
 
@@ -61,7 +126,7 @@ MEASURED = (
         Column("compression", "m", "d_max less d at the first touch: how much nearer the halves come"),
         Column("t_max", "s", "time of d_max after the first touch"),
     ),
-    *columns.COMPACT,
+    *COMPACT,
 )
 
 
@@ -134,7 +199,7 @@ STUDY = Study(
     question="Do compressed aggregates collide as close-packed and extracted (CPE) ones of the same filling factor do?",
     scene=Scene(
         "the study of CPE and compressed aggregates",
-        columns.HEAD_ON_ICE,
+        HEAD_ON_ICE,
         ("velocity",),
         measured=("compressed", "nominal", "radius", "pair", "step", *columns.OF_GRAINS),
     ),

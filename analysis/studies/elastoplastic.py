@@ -16,6 +16,7 @@ from ..theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, p
 from . import columns
 from .columns import Column, constant, group, one, parameter
 from .comparison import Row
+from .compressed import COMPACT, HEAD_ON_ICE, largest_compression
 from .estimates import Estimate, beside, estimate, estimates, exponent, fraction, mean, smoothed_scatter, where
 from .figures import curves, snapshots
 from .study import GALLERY, Study
@@ -32,7 +33,7 @@ GRAIN_RADIUS, START = 1e-7, (15.0, 3.0)  # m, of all runs; where fits start: ln 
 
 def _compression(run, row):
     columns.require_papers_grains(run)
-    maximum, exceeded = columns.largest_compression(run)
+    maximum, exceeded = largest_compression(run)
     offset = float(run.history["d"][0]) + 2.0 * row["grain_radius"]
     return offset, maximum.length, maximum.length_error, exceeded, maximum.time, maximum.time_error
 
@@ -80,7 +81,7 @@ MEASURED = (
         Column("inner_coordination", "", f"mean number of contacts of grains {SKIN:g} r below the surface", gaps=True),
         Column("zone_filling", "", ZONES, gaps=True),
     ),
-    *columns.COMPACT,
+    *COMPACT,
 )
 
 
@@ -316,8 +317,7 @@ def _new(runs, plain):
 def figures(runs):
     """A24's Figs 3 and 5."""
     plain = once(runs[~runs.changed]).sort_values(["filling", "radius"], ascending=[False, True])
-    own = where(plain, velocity=VELOCITY)
-    own = own.assign(of=[f"φ = {filling:g}" for filling in own.filling])
+    own = where(plain, velocity=VELOCITY).assign(of=lambda runs: [f"φ = {filling:g}" for filling in runs.filling])
 
     def sizes(axes, panel):
         radius = np.linspace(30, 90, 40)
@@ -338,7 +338,7 @@ STUDY = Study(
     question="Do close-packed aggregates compress like elastoplastic spheres, with which yield stress and modulus?",
     scene=Scene(
         name="the study of Arakawa et al. (2024)",
-        values={"packing": "cpe"} | {name: own for name, own in columns.HEAD_ON_ICE.items() if name not in UNCHANGED},
+        values={"packing": "cpe"} | {name: own for name, own in HEAD_ON_ICE.items() if name not in UNCHANGED},
         numbers=("filling", "radius", "velocity", "seed"),
         measured=(*UNCHANGED, "duration"),
     ),

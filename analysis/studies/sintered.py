@@ -94,7 +94,7 @@ MEASURED = (
     parameter("neck", "", "beta; 0: unsintered"),
     columns.VELOCITY,
     constant("criticalRolling", "m", "xi_crit"),
-    columns.VISCOUS_TIME,
+    parameter("viscoelasticTime", "s", "T_vis of the viscous drag"),
     columns.GRAIN_RADIUS,
     group(
         _aggregates,

@@ -1,12 +1,10 @@
 """A study: which runs count, what is measured of each, numbers beside a paper's, figures. One module here each, named
 as the study, defines STUDY; so does a file of one's own."""
 
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from runpy import run_path
-from traceback import extract_tb
 from typing import Callable
 
 from ..printable import suggested
@@ -16,11 +14,10 @@ from .columns import LARGEST, OUTCOME, VELOCITY, parameter, row_of
 
 NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
-SAYS = "must be as analysis/STUDIES.md says"
 
 
 class NoSuchStudy(Exception):
-    """No study of that name, or no file that defines one, or one that fails; the message is one line."""
+    """No study of that name, or no file that defines one; the message is one line."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +55,6 @@ class Study:
     independent: str = "pairs"
     alike: bool = False
     name: str = ""
-    file: Path = field(default=None, compare=False)
 
     @property
     def columns(self):
@@ -104,25 +100,10 @@ def find(name):
         file = Path(name)
         if not file.is_file():
             raise NoSuchStudy(f"{file}: no such file")
-        with own_errors(file):
-            defined = run_path(str(file), run_name=f"own_study_{file.stem}")
+        defined = run_path(str(file), run_name=f"own_study_{file.stem}")
         if "STUDY" not in defined:
-            raise NoSuchStudy(f"{file}: defines no STUDY; {SAYS}")
-        return replace(defined["STUDY"], name=file.stem, file=file)
+            raise NoSuchStudy(f"{file}: defines no STUDY; must be as analysis/STUDIES.md says")
+        return replace(defined["STUDY"], name=file.stem)
     if name not in NAMES:
         raise NoSuchStudy(f"no study {name}{suggested(name, NAMES)}, or a file NAME.py of one's own")
     return replace(import_module(f"..{name}", __name__).STUDY, name=name)
-
-
-@contextmanager
-def own_errors(file):
-    """Context in which an error of a study of one's own (file: its Path; None: none) becomes NoSuchStudy, with its
-    line."""
-    try:
-        yield
-    except (Exception, SystemExit) as error:
-        if file is None or type(error).__module__.startswith("analysis."):  # its message is one line
-            raise
-        lines = [own.lineno for own in extract_tb(error.__traceback__) if Path(own.filename).name == file.name]
-        text, where = " ".join(str(error).split()), f" at line {lines[-1]}" if lines else ""
-        raise NoSuchStudy(f"{file}: {type(error).__name__}{where}: {text}; {SAYS}") from None

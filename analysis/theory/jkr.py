@@ -8,24 +8,14 @@ u_c = 6^(-1/3), where D = -(9/16)^(1/3) is the pull-off (A22 eq 3). Measured fro
 exactly: no term is negative, so the root w is found to the last digits even where D(u) is flat.
 """
 
-from decimal import Decimal, localcontext
-
 import numpy as np
 
 U_PULL_OFF = 6.0 ** (-1.0 / 3.0)
 ENERGY_SCALE = 4.0 * 6.0 ** (1.0 / 3.0)
 
 
-def _cube_root_of_9_16():
-    """(9/16)^(1/3) as an unevaluated sum of two doubles: beside the pull-off one double is too coarse."""
-    with localcontext() as context:
-        context.prec = 50
-        exact = (Decimal(9) / Decimal(16)) ** (Decimal(1) / Decimal(3))
-        high = float(exact)
-        return high, float(exact - Decimal(high))
-
-
-PULL_OFF_OVERLAP, _PULL_OFF_REST = _cube_root_of_9_16()
+# (9/16)^(1/3) as a sum of two doubles: beside the pull-off one is too coarse.
+PULL_OFF_OVERLAP, _PULL_OFF_REST = 0.8254818122236567, -1.4776601947357812e-17
 # An overlap of -delta_c, divided by delta0, may round to just beyond the pull-off: that much is not a separation.
 _ROUNDING = 4e-16
 

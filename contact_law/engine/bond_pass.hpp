@@ -92,13 +92,6 @@ template <class Pack> struct BondPasses {
 			}
 		P::sumLanes(sum, sums);
 	}
-
-	static void addTo(InstructionSet& set)
-	{
-		set.bondForces[false] = &forces<false>;
-		set.bondForces[true] = &forces<true>;
-		set.bondEnergies = &energies;
-	}
 };
 
 } // namespace contact_law

@@ -48,7 +48,7 @@ void kickEarly(const SharedState& shared, const EarlyKick& early, Grain& g, doub
 void Dynamics::kickEarly(double time)
 {
 	for (auto& domain : domains)
-		for (const EarlyKick& early : domain->ledger.earlyKicks())
+		for (const EarlyKick& early : domain->ledger.early)
 			contact_law::kickEarly(shared, early, shared.grains[early.grain], time);
 }
 
@@ -67,7 +67,7 @@ void Dynamics::set(int index, const GrainMotion& now)
 	copyMotion(now, p);
 	shared.displace(k, positionOf(p) - from);
 	kick(shared, p, k, -0.5 * shared.dt);
-	for (const EarlyKick& early : domainOf(k).ledger.earlyKicks())
+	for (const EarlyKick& early : domainOf(k).ledger.early)
 		if (early.grain == k) contact_law::kickEarly(shared, early, p, -shared.dt);
 	velocitiesSet = true;
 	outdateLists();
@@ -113,7 +113,7 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 	const auto same = [](const Vec3<double>& a, const Vec3<double>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
 	if (same(added, { 0, 0, 0 }) && same(convective, shared.convective)) return;
 	for (auto& domain : domains)
-		domain->ledger.addMeanFieldWork(domain->kineticEnergy());
+		domain->ledger.meanField += domain->kineticEnergy();
 	kickAll(0.5 * shared.dt);
 	for (int k = 0; k < count; ++k) {
 		Grain& p = shared.grains[k];
@@ -124,7 +124,7 @@ void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& conve
 	outdateLists();
 	kickAll(-0.5 * shared.dt);
 	for (auto& domain : domains) {
-		domain->ledger.addMeanFieldWork(-domain->kineticEnergy());
+		domain->ledger.meanField -= domain->kineticEnergy();
 		domain->cell.rate = domain->cell.rate
 		        + Images<double>::times(added, domain->cell.size); // the images' velocities change with the grains'
 	}
@@ -200,7 +200,9 @@ bool Dynamics::place(const Inherited::Pair& one)
 void Dynamics::continueFrom(const Booked& before)
 {
 	Domain& one = *domains[0];
-	one.ledger.add(before.lost, before.counts, before.boundaryWork);
+	one.ledger.lost += before.lost;
+	one.ledger.counts += before.counts;
+	one.ledger.boundary.done += before.boundaryWork;
 	one.constraints.work += before.constraintWork;
 	one.outside.work += before.externalWork;
 	countedBefore = before.counters;

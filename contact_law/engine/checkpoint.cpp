@@ -12,8 +12,6 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	// 1: without this header, up to version 0.1; 2, 3: version 0.2; 4: version 0.3; 5, 6: version 0.4; 7: with planes; 8: with a sum
-	// at the end; 9: with counts of the run before
 	constexpr int formatNumber = 9;
 
 	// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
@@ -45,11 +43,9 @@ namespace {
 
 		void header()
 		{
-			const bool known = next() == magicNumber;
-			const double saved = known ? next() : 1; // the first format had no header
-			if (saved != formatNumber)
-				throw std::invalid_argument("the checkpoint of the grains is of format " + textOf(saved)
-				        + ", which another version wrote: it must be " + textOf(formatNumber));
+			if (next() != magicNumber || next() != formatNumber)
+				throw std::invalid_argument(
+				        "the checkpoint of the grains is of another version: it must be of format " + textOf(formatNumber));
 			requireSealed(from);
 		}
 		template <class T> void number(T& value) { value = T(next()); }
@@ -155,11 +151,13 @@ namespace {
 	template <class Archive> void transfer(Archive& archive, Domain& domain, const SharedState& shared)
 	{
 		transferDoubles(archive, domain.cell.size, domain.cell.inverse, domain.cell.rate);
-		domain.ledger.transfer(archive);
+		Ledger& ledger = domain.ledger;
+		transferDoubles(archive, ledger.lost, ledger.eventWork, ledger.meanField, ledger.boundary);
+		transferPushes(archive, ledger.early);
 		transfer(archive, domain.constraints);
 		transferPushes(archive, domain.outside.grains);
 		archive.number(domain.outside.work);
-		Counts& counts = domain.ledger.counts;
+		Counts& counts = ledger.counts;
 		TouchingPairs::Order& order = domain.touching.order;
 		transferNumbers(archive, counts.events, counts.formed, counts.broken, order.sortedBlocks, order.changed,
 		        order.stepsSinceSort, domain.lists.searches, domain.lists.distanceChecks);
@@ -183,12 +181,6 @@ void requireSealed(const std::vector<double>& numbers)
 {
 	if (numbers.empty() || numbers.back() != sumOfBits(numbers, numbers.size() - 1))
 		throw std::invalid_argument("the checkpoint of the grains is damaged: it must be as O.save wrote it");
-}
-
-template <class Archive> void Ledger::transfer(Archive& archive)
-{
-	transferDoubles(archive, lost, eventWork, meanField, boundary);
-	transferPushes(archive, early);
 }
 
 template <class Archive> void PlaneContacts::transfer(Archive& archive)

@@ -35,6 +35,23 @@ public:
 				count += block.i[k] != dummy;
 		return count;
 	}
+	std::vector<int> inOrder() const // used slots, by their pairs
+	{
+		struct Key {
+			int i, j, slot;
+			bool operator<(const Key& other) const { return i != other.i ? i < other.i : j < other.j; }
+		};
+		std::vector<Key> keys;
+		for (int slot = 0; slot < slots; ++slot)
+			if (isUsed(slot)) keys.push_back({ first(slot), second(slot), slot });
+		const auto added = std::is_sorted_until(keys.begin(), keys.end()); // those before stand as the last sorting left them
+		std::sort(added, keys.end());
+		std::inplace_merge(keys.begin(), added, keys.end());
+		std::vector<int> order;
+		for (const Key& key : keys)
+			order.push_back(key.slot);
+		return order;
+	}
 	ContactHistory<double> history(int slot) const { return historyIn(blocks[slot / lanes], slot % lanes); }
 	void writeHistory(int slot, const ContactHistory<double>& h)
 	{
@@ -127,21 +144,11 @@ public:
 	// Into the order of pairs, without unused slots; the next contact starts a block of its own.
 	void sort()
 	{
-		struct Key {
-			int i, j, slot;
-			bool operator<(const Key& other) const { return i != other.i ? i < other.i : j < other.j; }
-		};
-		std::vector<Key> order;
-		for (int slot = 0; slot < slots; ++slot)
-			if (isUsed(slot)) order.push_back({ first(slot), second(slot), slot });
-		const auto added = std::is_sorted_until(order.begin(), order.end()); // those before stand as the last sorting left them
-		std::sort(added, order.end());
-		std::inplace_merge(order.begin(), added, order.end());
 		const ContactList before = *this;
 		clear();
-		for (const Key& key : order) {
+		for (const int slot : before.inOrder()) {
 			appendUnused();
-			copy(before, key.slot, slots - 1);
+			copy(before, slot, slots - 1);
 		}
 		slots = blockCount() * lanes;
 	}
@@ -242,13 +249,10 @@ public:
 	// Into the order of pairs, without unused slots.
 	void sort()
 	{
-		std::vector<Bond> order;
-		for (int slot = 0; slot < slots; ++slot)
-			if (isUsed(slot)) order.push_back(get(slot, unused.constants));
-		std::sort(order.begin(), order.end(), [](const Bond& a, const Bond& b) { return a.i != b.i ? a.i < b.i : a.j < b.j; });
+		const BondList before = *this;
 		clear();
-		for (const Bond& bond : order)
-			append(bond);
+		for (const int slot : before.inOrder())
+			append(before.get(slot, unused.constants));
 	}
 	void clear()
 	{

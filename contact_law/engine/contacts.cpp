@@ -174,7 +174,7 @@ Booked booked(const Dynamics& dynamics)
 	Booked all;
 	all.counters = dynamics.counters();
 	for (const auto& domain : dynamics.parts()) {
-		all.lost += domain->ledger.dissipated();
+		all.lost += domain->ledger.lost;
 		all.counts += domain->ledger.counts;
 		all.boundaryWork += domain->ledger.boundaryWork();
 		all.constraintWork += domain->constraints.work + domain->planes.work;

@@ -171,7 +171,7 @@ void Domain::convect(int first, int last)
 		Grain& g = s.grains[k];
 		const Vec3<double> before = velocityOf(g), gain = s.dt * Images<double>::times(s.convective, before);
 		const Vec3<double> after = before + gain + (s.dt * s.inverseMass[k]) * Vec3<double> { g.fx, g.fy, g.fz };
-		ledger.addMeanFieldWork(-(0.5 / s.inverseMass[k] * dot(gain, before + after)));
+		ledger.meanField -= 0.5 / s.inverseMass[k] * dot(gain, before + after);
 		g.vx += gain.x, g.vy += gain.y, g.vz += gain.z;
 		kicked.x = std::max(kicked.x, std::abs(gain.x)), kicked.y = std::max(kicked.y, std::abs(gain.y)),
 		kicked.z = std::max(kicked.z, std::abs(gain.z));
@@ -244,7 +244,7 @@ StoredEnergy<double> Domain::energies()
 
 double Domain::kineticEnergy() const
 {
-	double sum = ledger.workOfEvents();
+	double sum = ledger.eventWork;
 	for (int k = begin; k < end; ++k)
 		sum += kineticEnergyOf(k);
 	return sum;

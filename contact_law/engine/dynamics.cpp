@@ -283,7 +283,7 @@ void Dynamics::read(std::vector<GrainMotion>& grains) const
 		if (options.orientations) g.orientation = shared.orientation[k];
 	}
 	for (const auto& domain : domains)
-		for (const EarlyKick& early : domain->ledger.earlyKicks()) {
+		for (const EarlyKick& early : domain->ledger.early) {
 			Grain change {};
 			contact_law::kickEarly(shared, early, change, shared.dt);
 			GrainMotion& g = grains[original[early.grain]];

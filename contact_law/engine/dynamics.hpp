@@ -120,7 +120,7 @@ public:
 	void setThreads(int threads) { options.threads = threads; }
 	// Goes on booking where another run of these grains ended.
 	void continueFrom(const Booked&);
-	void bookDisconnection(double energy) { domains[0]->ledger.bookDisconnection(energy); } // [J]
+	void bookDisconnection(double energy) { domains[0]->ledger.lost.disconnection += energy; } // [J]
 
 	// ---- its state ----
 

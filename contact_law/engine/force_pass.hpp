@@ -255,13 +255,6 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		Access::sumLanes(sum, sums);
 	}
 
-	static void addTo(InstructionSet& set)
-	{
-		set.sumOfProduct = [](double a, double b, double c) { return a * b + c; };
-		add<0>(set);
-	}
-
-private:
 	template <unsigned mechanisms, bool uniform> static void add(InstructionSet& set)
 	{
 		set.forces[mechanisms][uniform][false] = &forces<mechanisms, uniform, false>;
@@ -283,9 +276,15 @@ template <class Pack> InstructionSet allPasses(const char* name, decltype(Instru
 	InstructionSet set {};
 	set.name = name;
 	set.integrate = integrate;
-	Passes<Pack>::addTo(set);
-	BondPasses<Pack>::addTo(set);
-	NeighbourPasses<Pack>::addTo(set);
+	set.sumOfProduct = [](double a, double b, double c) { return a * b + c; };
+	Passes<Pack>::template add<0>(set);
+	set.bondForces[false] = &BondPasses<Pack>::template forces<false>;
+	set.bondForces[true] = &BondPasses<Pack>::template forces<true>;
+	set.bondEnergies = &BondPasses<Pack>::energies;
+	set.addInBox[false] = &NeighbourPasses<Pack>::template addInBox<false>;
+	set.addInBox[true] = &NeighbourPasses<Pack>::template addInBox<true>;
+	set.closeGrains[false] = &NeighbourPasses<Pack>::template closeGrains<false>;
+	set.closeGrains[true] = &NeighbourPasses<Pack>::template closeGrains<true>;
 	return set;
 }
 

@@ -71,9 +71,8 @@ public:
 		lost += r.dissipated;
 		const EarlyKick kick { index, r.forceBefore - 0.5 * r.force, r.torqueBefore1 - 0.5 * r.torque1 };
 		eventWork += dt * (dot(kick.force, velocityOf(grain)) + dot(kick.torque, spinOf(grain)));
-		keep(kick);
+		early.push_back(kick);
 	}
-	void keep(const EarlyKick& kick) { early.push_back(kick); } // of an own grain
 	// A contact's kick that no pass adds.
 	void addCrossing(const Image& image, const Vec3<double>& kick)
 	{
@@ -96,34 +95,20 @@ public:
 			eventWork += dt * (dot(kick.force, velocityOf(g)) + dot(kick.torque, spinOf(g)));
 		}
 	}
-	void addMeanFieldWork(double work) { meanField += work; }
-	void bookDisconnection(double energy) { lost.disconnection += energy; }
-	void add(const Dissipation& dissipated, const Counts& counted, double boundaryWork)
-	{
-		lost += dissipated, counts += counted, boundary.done += boundaryWork;
-	}
 
 	// ---- so far [J] ----
 
-	const Dissipation& dissipated() const { return lost; }
-	double workOfEvents() const
-	{
-		return eventWork;
-	} // what events of the latest step add to the kinetic energy now beyond half the kicks' work
+	Dissipation lost;
+	double eventWork = 0;  // what events of the latest step add to the kinetic energy now beyond half the kicks' work
+	BoundaryWork boundary; // of a periodic cell
+	double meanField = 0;  // taken out of the kinetic energy by changes of the velocity gradient and by the convective acceleration
+	std::vector<EarlyKick> early; // of own grains
 	double boundaryWork() const { return boundary.done + meanField; }
-	const std::vector<EarlyKick>& earlyKicks() const { return early; }
-	template <class Archive> void transfer(Archive&); // all but the counts (checkpoint.cpp)
 
 	Counts counts;
 
 private:
 	const PeriodicCell& cell;
-	Dissipation lost;
-	double eventWork = 0;
-	BoundaryWork boundary; // of a periodic cell
-	double meanField =
-	        0; // taken out of the kinetic energy by changes of the cell's velocity gradient and by the convective acceleration
-	std::vector<EarlyKick> early;
 	struct {
 		Dissipation dissipated;
 		long slips = 0;

@@ -89,14 +89,6 @@ template <class Pack> struct NeighbourPasses {
 		}
 		return count;
 	}
-
-	static void addTo(InstructionSet& set)
-	{
-		set.addInBox[false] = &addInBox<false>;
-		set.addInBox[true] = &addInBox<true>;
-		set.closeGrains[false] = &closeGrains<false>;
-		set.closeGrains[true] = &closeGrains<true>;
-	}
 };
 
 } // namespace contact_law

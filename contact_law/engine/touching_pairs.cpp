@@ -201,8 +201,8 @@ void ContactEvents::book(int i, int j, const ContactStepResult& r, const Contact
 {
 	ledger.book(r, m, image, o);
 	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
-	if (ownsFirst(o)) ledger.keep({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
-	if (ownsSecond(o)) ledger.keep({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
+	if (ownsFirst(o)) ledger.early.push_back({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
+	if (ownsSecond(o)) ledger.early.push_back({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });
 }
 
 // Kicks of a contact that no pass scatters.

@@ -6,9 +6,8 @@ import numpy as np
 import pandas
 import pytest
 
-from analysis.studies.comparison import Row, as_text, counted
+from analysis.studies.comparison import END, START, PageError, Row, as_text, counted, filled
 from analysis.studies.estimates import *
-from analysis.studies.pages import END, START, PageError, filled
 
 
 def runs_of(values, **more):

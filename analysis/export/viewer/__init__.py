@@ -3,7 +3,6 @@ network."""
 
 import base64
 import json
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +63,7 @@ def _data(run):
         "title": run_title(run),
         "unit": unit,
         "radius": _packed(first.radius / unit, "<f4"),
-        "legends": {name: list(map(asdict, way.legend(of))) for name, way in COLOURINGS.items()},
+        "legends": {name: way.legend(of) for name, way in COLOURINGS.items()},
         "scale": SCALE,
         "bond": BONDED,
         "states": [_state(exported, of, origin, unit) for exported in states],
