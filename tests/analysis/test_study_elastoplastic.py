@@ -1,5 +1,5 @@
-"""The study of elastoplastic aggregates (Arakawa et al. 2024), and that of compressed ones: Andrews's model against its
-integrated motion, made runs whose answers are known, fits against closed forms."""
+"""The studies of elastoplastic aggregates (Arakawa et al. 2024) and of compressed ones: Andrews's model against its
+integrated motion, and made runs whose answers are known."""
 
 import re
 

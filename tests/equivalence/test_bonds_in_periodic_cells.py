@@ -1,5 +1,4 @@
-"""Sintered bonds in periodic cells: the fused engine against the functors step by step, its own ledger, threads and
-instruction sets, checkpoints."""
+"""Sintered bonds in periodic cells: the fused engine against the functors step by step, and its own ledger."""
 
 import pytest
 from scenes import *

@@ -1,5 +1,4 @@
-"""JKRWadaEngine against the functors (to rounding, step by step), and against itself: threads, instruction sets,
-checkpoints, sub-steps."""
+"""JKRWadaEngine against the functors, to rounding and step by step; sub-steps are steps."""
 
 import pytest
 from scenes import *

@@ -1,5 +1,5 @@
 """Grains that have flown apart are put into a new order, among other domains: nothing changes but the order in which
-forces are added. Results do not depend on the number of threads, however many domains there are."""
+forces are added."""
 
 import pytest
 from scenes import *

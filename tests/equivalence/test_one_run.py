@@ -74,7 +74,7 @@ RUNS = {
     "drag, a cell": (cell("drag", 0), 25, 25, ".xml.bz2", lambda c: met(c) and c["searches"] > 1, 2),
     "planes": (engine(partial(planes.start, count=343)), 30, 60, ".yade.gz", lambda c: c["planeContacts"] > 20, 2),
     "unlike, sintered": (sintered("unlike", 216, 12.0), 0, 10, ".yade.gz", lambda c: sum(broken()) > 20, 2),
-    "drag, in a new order": (spread_out, 30, 90, ".yade.gz", lambda c: met(c) and c["orders"] >= 1, 2, 3, 8),
+    "drag, in a new order": (spread_out, 30, 90, ".yade.gz", lambda c: met(c) and c["orders"] >= 1, 3),
     "blocked": (held, 40, 60, ".yade.bz2", lambda c: c["constraintWork"] != 0, 2),
     "pushed, drag": (partial(pushed, 1e-12), 20, 20, ".xml", lambda c: c["externalWork"] != 0, 2),
 }
@@ -82,7 +82,7 @@ RUNS = {
 
 @pytest.mark.parametrize("name", RUNS)
 def test_same_bits_on_any_threads_every_time_and_after_a_checkpoint(name):
-    begin, before, after, file, happened, *threads = RUNS[name]
+    begin, before, after, file, happened, threads = RUNS[name]
 
     def state():
         counts = O.engines[0].statistics()
@@ -100,9 +100,9 @@ def test_same_bits_on_any_threads_every_time_and_after_a_checkpoint(name):
 
     straight = end(1)
     assert happened({**O.engines[0].statistics(), **straight[-1]}) and ("sintered" not in name or len(straight[1]) == 3)
-    assert all(end(n) == straight for n in threads) and end(1, save=True) == straight
+    assert end(threads) == straight and end(1, save=True) == straight
     O.load(f"half{file}")
-    O.engines[0].threads = threads[-1]
+    O.engines[0].threads = threads
     O.run(after, True)
     *same, energy = state()
     assert same == [*straight[:-1]] and energy == pytest.approx(straight[-1], rel=1e-12)

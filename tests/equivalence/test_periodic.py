@@ -1,5 +1,4 @@
-"""JKRWadaEngine in periodic cells against the functors, step by step, and against itself: threads, instruction sets,
-sub-steps."""
+"""JKRWadaEngine in periodic cells against the functors, step by step; images across every side."""
 
 import pytest
 from scenes import *

@@ -1,5 +1,4 @@
-"""Grains on planes (Walls) with JKRWadaEngine: against the functors (to rounding, step by step), in both directions
-of handing over, and against itself: threads, checkpoints, changes by a script."""
+"""Grains on planes (Walls) with JKRWadaEngine: against the functors, to rounding and step by step, and in a cell."""
 
 import pytest
 from scenes import *

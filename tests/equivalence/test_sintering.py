@@ -1,5 +1,5 @@
-"""contact_law.sinter() on running scenes: engine against functors step by step, against bonds made at the start,
-threads, checkpoints, hand-over, refusals."""
+"""contact_law.sinter() on running scenes: engine against functors step by step, against bonds made at the start, and
+what is refused."""
 
 import pytest
 from refused import refused

@@ -1,4 +1,4 @@
-"""JKRWadaConstants and JKRWadaBond: the kernel's lists of constants, with their numbers, documentation and units."""
+"""JKRWadaConstants and JKRWadaBond in YADE are the kernel's lists of constants, with the same numbers."""
 
 from scenes import *
 

@@ -1,5 +1,4 @@
-"""Two aggregates in their places (A22 section 2.4, eq 27): offset, momentum, graze and miss, and the time until they
-touch."""
+"""Two aggregates in their places (A22 section 2.4, eq 27): offset, momentum, and the time until they touch."""
 
 import numpy as np
 import pytest

@@ -104,7 +104,7 @@ def test_no_fault_leaves_half_of_what_a_command_writes(forks, name):
         whole = found()
         assert len(whole) >= 1 and len(calls) >= 3
         for call in sample(calls, lambda path: Path(path).suffix):
-            for fault in (KILLED, DISK_FULL):
+            for fault in (KILLED, DISK_FULL) if call.name == "fsync" else (KILLED,):
                 shutil.rmtree(out)
                 out.mkdir()
                 done = forks.call(program, arguments, folder, call.number, fault)

@@ -1,4 +1,4 @@
-"""A run that was killed or stopped resumes from its checkpoint as if nothing had happened, whatever its kind."""
+"""A run that was killed or stopped resumes from its checkpoint as if nothing had happened."""
 
 import os
 import shlex

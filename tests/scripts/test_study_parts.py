@@ -1,4 +1,4 @@
-"""Tables, estimates and texts of a study, without running one."""
+"""Tables of a study, the times that it expects, and which run is a row's, without running one."""
 
 import os
 

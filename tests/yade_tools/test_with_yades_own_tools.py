@@ -1,4 +1,4 @@
-"""Functors and engine in the company of YADE's own tools: threads, VTK output, stress, help texts, energies."""
+"""Functors and engine in the company of YADE's own tools: threads, VTK output, stress, help texts."""
 
 import pydoc
 
