@@ -86,19 +86,9 @@ class GrainParameters(Parameters):
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
     """Constants of a contact of two grains, where no YADE runs. A run takes them from the plugin; a test compares.
 
-    Parameters
-    ----------
-    grains : object
-        Anything with the attributes of Material; of viscoelasticTime [s] and slidingStiffnessFactor too.
-    radii : (float, float), optional
-        Of the two [m]; both grainRadius if left out.
-    neck, linearDamping : float
-        Of sintered grains, beta; k_n.
-
-    Returns
-    -------
-    dict
-        {name: value} by the plugin's names, SI; with a neck those of a bond, of two grains of grainRadius, as "bond".
+    grains: with the attributes of Material, perhaps viscoelasticTime [s] and slidingStiffnessFactor; radii: of the two
+    [m], both grainRadius if left out; neck: beta of sintered grains; linearDamping: k_n. Returns {name: value} by the
+    plugin's names, SI; with a neck those of a bond, of two grains of grainRadius, as "bond".
     """
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     properties = [float(getattr(grains, name)) for name in names]

@@ -47,6 +47,7 @@ STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def parse_arguments(arguments):
+    """The options; .sbatch has those after --."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", metavar="TABLE")
     jobs = f"threads at once (default: one for each core, {CORES}); with --slurm tasks of an array (default: all)"

@@ -21,24 +21,9 @@ SHORTEST = 0.01  # t0, of steps that are chosen: below, rather another tolerance
 
 
 def with_step(parameters, limit, error, depends_on):
-    """The parameters with their stepFraction, chosen where it is auto.
-
-    Parameters
-    ----------
-    parameters : run.parameters.RunParameters
-    limit : float
-        Of stability [t0].
-    error : callable
-        Without arguments: the ledger's error over the square of the step.
-    depends_on : str
-        What sets the limit.
-
-    Raises
-    ------
-    ParameterError
-        For a step that is unstable, or for auto in a run that was not measured, or with a tolerance that takes steps
-        shorter than SHORTEST.
-    """
+    """The parameters with their stepFraction, chosen where it is auto: error() is the ledger's error over the square of
+    the step. Raises ParameterError for a step above the limit of stability [t0], which depends_on names in words, for
+    auto in a run that was not measured, or with a tolerance that takes steps shorter than SHORTEST."""
     if parameters.stepFraction == AUTO:
         return parameters.changed(stepFraction=longest_step(error(), parameters.tolerance, limit))
     require_stable(parameters.stepFraction, limit, depends_on)
@@ -117,38 +102,7 @@ def equivalent_filling(packing, filling, planar, constants):
     return filling
 
 
-# ---- errors of the energy ledger ----
-#
-# The ledger closes with second order in the step s, in every kind of run that was measured. So the error is a sum of
-# causes, each a number times s^2, and the longest step follows. What each causes, of the largest |E(t) - E(0)|/K(0) of
-# a collision (e = F_c delta_c, the scale of a contact's energy; K(0): of all grains together in their centre of mass;
-# N: their number):
-#
-# - Contacts that form or break, or begin to slip, within a step. Each leaves an error of the order e s^2, and their
-#   number grows with the energy that there is for them, as 1 + x with x = K(0)/e. Of random sign they would leave
-#   s^2 (1 + x)^(1/2)/x of K(0), of one sign s^2 (1 + x)/x; measured is a power in between:
-#   EVENTS s^2 (1 + 1/x)^(1/2) x^-DECAY.
-# - The curvature of the normal force along the way that grains make in a step: SPEED s^2 k/(1 + k)^(4/5), where
-#   k = K(0)/(N e) is the relative velocity squared over 8 e/m. For small k this goes with the square of the overlap
-#   travelled in a step; for large k a contact lasts as long as Hertz's, ~ v^(-1/5).
-# - Sintered bonds that break, events of the energy b = pi a^2 gamma of a bond (Sirono & Ueno 2017, eq 6) and of its
-#   frequency: BREAKING (s/s_b)^2 (1 + 1/x_b)^(1/2) x_b^-DECAY, x_b = K(0)/b, s_b the step at which bonds become
-#   unstable. Few break where the grains' energy is far below a bond's: times k_b^2/(k_b^2 + FEW^2), k_b = K(0)/(N b).
-#   In BCCA and BPCA aggregates, of two bonds a grain, BREAKING_FLUFFY takes the place of BREAKING.
-#
-# The first two are those of CPE aggregates in space. In a plane, and for BCCA and BPCA aggregates, which have fewer
-# contacts to share an impact, they are FLUFFY times as large; where springs are cut at their limits (limit = cut), each
-# cut an event more, CUT times. An aggregate that meets a plate counts as one of a pair at twice its velocity, PLATE
-# times: a contact with a plate (R* = r, not r/2) has 2^(4/3) the energy and 2^(7/6) the time of one of two grains.
-#
-# In a compression nothing has a speed of its own. What counts is the error over the work of the boundaries until the
-# end: FINAL s^2 exp(-DENSER phi), phi the filling at the end; grains that nothing damps vibrate on: UNDAMPED times. The
-# work goes with the rolling energy: where that is less than ice's of K13, which is ROLLING_OF_ICE e, errors are larger
-# by the ratio to the power of 2/3. Dense silicate and springs that are cut leave much larger errors: refused.
-#
-# The constants are such that 95 % of runs stay below the sum: fitted to the 98 % level of grids of runs and judged by
-# runs drawn at random (docs/measurements.md). The typical error is a quarter of it. Drag leaves somewhat smaller errors
-# and is left out, but where it limits the step.
+# ---- errors of the energy ledger (contact_law/MODEL.md, "What an error allows") ----
 
 EVENTS, DECAY, SPEED = 0.056, 0.36, 0.0101
 FLUFFY, CUT, PLATE = 3.0, 6.0, 1.6

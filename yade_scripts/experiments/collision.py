@@ -18,14 +18,8 @@ from yade_scripts import packings, time_step
 from yade_scripts.experiments import collision_step
 from yade_scripts.experiments.collision_step import LARGEST_NECK
 from yade_scripts.materials import pair_constants
-from yade_scripts.packings.aggregate import (
-    MOST_GRAINS,
-    MOST_GROWN,
-    NAMED_PACKING,
-    AggregateParameters,
-    make,
-    require_growable,
-)
+from yade_scripts.packings import aggregate
+from yade_scripts.packings.aggregate import MOST_GRAINS, NAMED_PACKING, AggregateParameters, make
 from yade_scripts.packings.files import SUM, sum_of_file
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
@@ -41,7 +35,6 @@ NECK = Check(
     f"0, or above that of a contact (ice: 0.1237) and at most {LARGEST_NECK}", lambda x: 0 <= x <= LARGEST_NECK
 )
 CHECKS = 100  # times in a run that it is looked whether pieces are apart
-NEIGHBOURS, PLANAR_NEIGHBOURS = 12, 6  # of a site of the close-packed lattices
 
 
 @dataclass(frozen=True)
@@ -86,7 +79,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
     ONLY_WITH = [
         *AggregateParameters.ONLY_WITH,
-        ("projectileGrains", "packing", MOST_GROWN),
+        ("projectileGrains", "packing", aggregate.MOST_GROWN),
         ("projectileFile", "packing", ["file"]),
         *((name, "target", [AGGREGATE]) for name in ("projectileGrains", "projectileFile", "impact", "neck")),
         *((name, "neck", [0]) for name in ("sizes", "initialOverlap")),  # bonds start at rest
@@ -97,7 +90,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
         found = super().filled_in()
         collision_step.require_usable(found)
         if found.projectileGrains is not None:
-            require_growable(found.packing, "projectileGrains", found.projectileGrains)
+            aggregate.require_growable(found.packing, "projectileGrains", found.projectileGrains)
         if found.neck and found.packing != "file":  # a file may name its material
             collision_step.require_sintered(found.neck, pair_constants(found))
         if found.endWhenApart is None:
@@ -166,20 +159,9 @@ def prepare(parameters, threads):
 
 
 def place(parameters, overlap):
-    """Aggregates in their places.
-
-    Parameters
-    ----------
-    parameters : CollisionParameters
-    overlap : float
-        Of touching grains [m].
-
-    Returns
-    -------
-    (parameters, packings, velocities)
-        Parameters with radius, filling and grains of the larger aggregate where it is not a CPE one; target and
-        projectile, or the one that meets the plate; velocities (3,) [m/s].
-    """
+    """(parameters, packings, velocities (3,) [m/s]) of target and projectile, or of the one that meets the plate, in
+    their places; the parameters with radius, filling and grains of the larger aggregate where it is not a CPE one.
+    overlap: of touching grains [m]."""
     if parameters.target == WALL:
         packing = make(parameters, overlap, 0)
         if parameters.packing != "cpe":
@@ -237,11 +219,8 @@ def _time_of_touch(parameters, pair, velocities, bond):
 
 
 def default_duration(parameters, radius, time_unit, touch):
-    """Duration [s] of a run that gives none: close-packed aggregates rebound within rebound_time(); fluffy ones move
-    through each other first.
-
-    radius: of the larger aggregate in grain radii; time_unit: t0 [s]; touch: time of the first touch [s].
-    """
+    """Duration [s] of a run that gives none: close-packed aggregates rebound within rebound_time(), fluffy ones move
+    through each other first. radius: of the larger one in grain radii; time_unit: t0 [s]; touch: when they do [s]."""
     way = 0.0 if parameters.packing == "cpe" else WAY * radius * parameters.grainRadius / parameters.velocity
     return touch + max(rebound_time(radius, time_unit), way)
 
@@ -284,19 +263,25 @@ def why_undecided(folder):
 
 
 def estimate(parameters):
-    """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain."""
+    """Estimate of a run, without its packings: contacts of a CPE packing by A24 eq 39, in BCCA two a grain; extents by
+    fits to BCCA of 32 to 4096 grains and BPCA of 300 to 50,000, of packings in files as of CPE."""
     constants = pair_constants(parameters, neck=parameters.neck)
     planar, time_unit = bool(parameters.planar), constants["timeUnit"]
     one, other = _grain_numbers(parameters)
-    if parameters.packing == "file":
-        neighbours = NEIGHBOURS / 2
-    elif parameters.is_grown:
-        neighbours = 2
-    else:
+    neighbours, way, most = 2, START_GAP, max(one, other)
+    if parameters.packing == "cpe":
         full = packings.maximum_filling(parameters.grainRadius, constants["equilibriumOverlap"], planar)
-        neighbours = parameters.filling / full * (PLANAR_NEIGHBOURS if planar else NEIGHBOURS)
-    radius = parameters.radius or _typical_radius(parameters.packing, max(one, other), planar)
-    touch = _typical_way(parameters) * parameters.grainRadius / parameters.velocity
+        neighbours = parameters.filling / full * (6 if planar else 12)
+        radius = parameters.radius
+        if parameters.target == AGGREGATE:  # from where spheres start, and 1.4 more
+            way = 2 * (radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
+    elif parameters.packing == "file":
+        neighbours, radius = 6, (most / 0.4) ** (1 / 3)
+    elif parameters.packing == "bpca":
+        radius = 2.6 * most ** (1 / 2.97)
+    else:
+        radius = 1.6 * most ** (1 / 1.5) if planar else 1.9 * most ** (1 / 1.9)
+    touch = way * parameters.grainRadius / parameters.velocity
     duration = parameters.duration or default_duration(parameters, radius, time_unit, touch)
     try:
         steps = duration / time_unit / collision_step.with_step(parameters, constants).stepFraction
@@ -306,6 +291,18 @@ def estimate(parameters):
         impact = min(touch + collision_step.duration_of_impact(parameters.changed(radius=radius)), duration)
         steps += impact / time_unit * (1 / short - 1 / parameters.stepFraction)
     return Estimate(one + other, (one + other) * neighbours / 2, steps)
+
+
+def _grain_numbers(parameters):
+    """Grains of target (0: a plate) and projectile; of files that can't be read as if they held one each."""
+    projectile = parameters.of_projectile()
+    numbers = parameters.grains, projectile.grains
+    if parameters.packing == "file":
+        try:
+            numbers = tuple(packings.load(file).grains for file in (parameters.file, projectile.file))
+        except packings.PackingError:
+            numbers = 1, 1
+    return (0, numbers[0]) if parameters.target == WALL else numbers
 
 
 def expected(parameters, run):
@@ -323,35 +320,6 @@ def expected(parameters, run):
     if parameters.duration is None and None not in (held.get("radius"), derived.get("timeUnit")):
         found["duration"] = default_duration(parameters, held["radius"], derived["timeUnit"], touch)
     return found
-
-
-def _grain_numbers(parameters):
-    """Grains of target (0: a plate) and projectile; of files that can't be read as if they held one each."""
-    projectile = parameters.of_projectile()
-    if parameters.packing != "file":
-        numbers = parameters.grains, projectile.grains
-    else:
-        try:
-            numbers = tuple(packings.load(file).grains for file in (parameters.file, projectile.file))
-        except packings.PackingError:
-            numbers = 1, 1
-    return (0, numbers[0]) if parameters.target == WALL else numbers
-
-
-def _typical_radius(packing, grains, planar):
-    """Extent in grain radii: fits to BCCA of 32 to 4096 grains and BPCA of 300 to 50,000; packings of files as CPE."""
-    if packing == "bpca":
-        return 2.6 * grains ** (1 / 2.97)
-    if packing == "file":
-        return (grains / 0.4) ** (1 / 3)
-    return 1.6 * grains ** (1 / 1.5) if planar else 1.9 * grains ** (1 / 1.9)
-
-
-def _typical_way(parameters):
-    """Grain radii until the first touch: of spheres and 1.4 more, or the gap at which aggregates of any shape start."""
-    if parameters.packing != "cpe" or parameters.target == WALL:
-        return START_GAP
-    return 2 * (parameters.radius + 1) * (1 - sqrt(1 - parameters.impact**2)) + 1.4
 
 
 KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, why_undecided)

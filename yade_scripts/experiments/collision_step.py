@@ -18,10 +18,8 @@ RADII = 4  # of the larger aggregate, that the two move against each other with 
 
 
 def complete(parameters, constants, threads):
-    """The parameters with what depends on the contact and on YADE's threads: stepFraction and threads.
-
-    constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
-    """
+    """The parameters with what depends on the contact (run.scene.pair_constants()) and on YADE's threads. Raises
+    ParameterError."""
     require_small_contacts(constants)
     require_sintered(parameters.neck, constants)
     return with_step(parameters, constants).with_threads(threads)

@@ -14,16 +14,8 @@ from analysis.measures.periodic_cell import AVERAGED, contact_pressure, filling_
 from analysis.runs.format import COMPRESSION, value_text
 from analysis.theory.aggregates import bcca_coordination
 from yade_scripts import packings, time_step
-from yade_scripts.experiments.compression_end import (
-    AXES,
-    LOOSE,
-    Ending,
-    deform,
-    longest_duration,
-    rates,
-    shrinking_rate,
-    with_start,
-)
+from yade_scripts.experiments import compression_end as end
+from yade_scripts.experiments.compression_end import AXES, LOOSE, deform, shrinking_rate
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.ballistic import rbd, square_for
@@ -140,10 +132,8 @@ def densest(constants):
 
 
 def complete(parameters, constants, threads):
-    """The parameters with what depends on the contact and on YADE's threads.
-
-    constants: as run.scene.pair_constants() gives them; threads: of YADE. Raises ParameterError.
-    """
+    """The parameters with what depends on the contact (run.scene.pair_constants()) and on YADE's threads. Raises
+    ParameterError."""
     require_small_contacts(constants)
     return with_step(_with_final_filling(parameters, constants), constants).with_threads(threads)
 
@@ -187,12 +177,16 @@ def prepare(parameters, threads):
     make = _layer if parameters.boundary == WALLS else _cluster
     packing, edges, build, own_series = make(parameters, constants)
     time_unit = constants["timeUnit"]
-    parameters = with_start(parameters.changed(initialFilling=filling_factor(packing.radius, edges)), time_unit)
-    end = Ending(parameters, time_unit)
+    parameters = parameters.changed(initialFilling=filling_factor(packing.radius, edges))
+    parameters = end.with_start(parameters, time_unit)
+    ending = end.Ending(parameters, time_unit)
 
     def come_down(recorder, state):
-        _move_piston(end.rate)
-        return end.is_pressed(recorder)
+        from yade.wrapper import Omega
+
+        piston = Omega().bodies[-1].state
+        piston.vel = [0.0, 0.0, -ending.rate * piston.pos[UP]]
+        return ending.is_pressed(recorder)
 
     rolling = parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
     height = {"initialHeight": edges[UP]} if parameters.boundary == WALLS else {}
@@ -206,8 +200,8 @@ def prepare(parameters, threads):
         series=own_series,
         law={"linearDamping": parameters.linearDamping},
         energy_is_conserved=parameters.engine == "fused",
-        control=come_down if parameters.boundary == WALLS else end,
-        ended_by=end.ended_by,
+        control=come_down if parameters.boundary == WALLS else ending,
+        ended_by=ending.ended_by,
         interval=max(1, round(between / parameters.stepFraction)),
         step_choice=time_step.reason(parameters, time_step.step_limit(constants, parameters.finalFilling)),
     )
@@ -280,19 +274,11 @@ def _layer(parameters, constants):
     return layer, [edge, edge, height], build, series_between_walls
 
 
-def _move_piston(rate):
-    """Have the upper plate come down at `rate` [1/s] times its height from now on."""
-    from yade.wrapper import Omega
-
-    piston = Omega().bodies[-1].state
-    piston.vel = [0.0, 0.0, -rate * piston.pos[UP]]
-
-
 def series(state, mass):
     """{name: value} of a compression's own series; state: as contact_law.snapshot(); mass (N,) [kg]."""
     position, edges = state["position"], state["cell_size"]
     contacts = contact_pressure(position, state["contact_pairs"], state["contact_normal_force"], edges)
-    kinetic = kinetic_pressure(mass, position, state["velocity"], edges, rates())
+    kinetic = kinetic_pressure(mass, position, state["velocity"], edges, end.rates())
     return {
         "filling": filling_factor(state["radius"], edges),
         "pressure": contacts + kinetic,
@@ -331,7 +317,7 @@ def estimate(parameters):
         ends, step = parameters.changed(finalFilling=FINAL_FILLING, stretch="no"), time_step.SHORTEST
     typical = DEPOSITED if parameters.boundary == WALLS else typical_first_filling(ends.grains)
     first = min(ends.initialFilling or typical, 0.9 * ends.finalFilling)
-    duration = parameters.duration or longest_duration(ends.changed(initialFilling=first), constants["timeUnit"])
+    duration = parameters.duration or end.longest_duration(ends.changed(initialFilling=first), constants["timeUnit"])
     fillings = np.exp(np.linspace(log(first), log(ends.finalFilling), 50))
     contacts = parameters.grains * float(bcca_coordination(fillings).mean()) / 2
     return Estimate(parameters.grains, contacts, duration / constants["timeUnit"] / step)
@@ -353,7 +339,7 @@ def expected(parameters, run):
     found["finalFilling"] = ends.finalFilling
     if parameters.duration is None and None not in (held.get("initialFilling"), derived.get("timeUnit")):
         whole = ends.changed(initialFilling=held["initialFilling"])
-        found["duration"] = longest_duration(whole, derived["timeUnit"])
+        found["duration"] = end.longest_duration(whole, derived["timeUnit"])
     return found
 
 

@@ -4,9 +4,8 @@ from math import ceil, sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
-from yade_scripts.packings.packing import Packing, centred, random_stream, touching_distance
+from yade_scripts.packings.packing import Packing, centred, random_stream, randomly_turned, touching_distance
 
 RAYS = 65536  # drawn at a time
 FIRST_GRID, GROWTH = 16, 1.5  # half width of the first grid in cells, and the ratio of the next one's to it
@@ -16,9 +15,8 @@ def bpca(grains, grain_radius, overlap, seed, index=0, radii=None):
     """An aggregate by ballistic particle-cluster aggregation (A22 section 2.4, Mukai et al. 1992).
 
     Grains come one by one on straight lines, from directions that are uniform on the sphere and with impact parameters
-    uniform over the cross-section of the sphere that holds the cluster, and stay where they first touch it; rays that
-    miss are drawn again. Grains that touch no other than the one that they hit may still be nearer to others than the
-    sum of the radii: these are contacts from the first step on, and pull (docs/aggregates.md).
+    uniform over the cross-section of the sphere that holds the cluster, and stay where they first touch it. Grains that
+    are then nearer to others than the sum of the radii pull from the first step on (docs/aggregates.md).
 
     Parameters
     ----------
@@ -54,13 +52,15 @@ def _hit_by_grains(radii, overlap, stream):
 
     grains, largest = len(radii), radii.max()
     position, following = np.zeros((grains, 3)), np.full(grains, -1, dtype=np.int32)
-    width = 2.0 * largest
-    half, count, extent = FIRST_GRID, 1, 0.0
+    width, half, count, extent = 2.0 * largest, FIRST_GRID, 1, 0.0
     head, low = grid(half)
     directions = offsets = np.empty((0, 3))
     while count < grains:
-        if not len(directions):
-            directions, offsets = _rays(stream)
+        if not len(directions):  # uniform on the sphere, offsets (RAYS, 2) uniform in the unit circle
+            directions = stream.normal(size=(RAYS, 3))
+            directions /= np.linalg.norm(directions, axis=1)[:, None]
+            distance, angle = np.sqrt(stream.uniform(size=RAYS)), stream.uniform(0.0, 2.0 * np.pi, RAYS)
+            offsets = np.stack([distance * np.cos(angle), distance * np.sin(angle)], axis=1)
         count, used, extent = ballistic_hits.grow(
             position, radii, count, overlap, directions, offsets, extent, largest, head, following, low, width
         )
@@ -69,14 +69,6 @@ def _hit_by_grains(radii, overlap, stream):
             half = int(half * GROWTH)
             head, low = grid(half)
     return position
-
-
-def _rays(stream):
-    """RAYS directions (B, 3), uniform on the sphere, and offsets (B, 2), uniform in the unit circle."""
-    directions = stream.normal(size=(RAYS, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    distance, angle = np.sqrt(stream.uniform(size=RAYS)), stream.uniform(0.0, 2.0 * np.pi, RAYS)
-    return directions, np.stack([distance * np.cos(angle), distance * np.sin(angle)], axis=1)
 
 
 def bcca(grains, grain_radius, overlap, seed, index=0, planar=False, radii=None):
@@ -110,15 +102,9 @@ def _of_halves(radii, touching, stream, planar):
     if grains == 1:
         return np.zeros((1, 3))
     parts = np.split(radii, [grains - grains // 2])
-    halves = [_turned(_of_halves(part, touching, stream, planar), stream, planar) for part in parts]
+    halves = [randomly_turned(_of_halves(part, touching, stream, planar), stream, planar) for part in parts]
     joined = np.concatenate([halves[0], _met(*halves, *parts, touching, stream, planar)])
     return centred(joined, radii)
-
-
-def _turned(position, stream, planar):
-    if planar:
-        return Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)]).apply(position) * (1, 1, 0)
-    return Rotation.random(random_state=stream).apply(position)
 
 
 def _met(target, projectile, target_radii, projectile_radii, touching, stream, planar):

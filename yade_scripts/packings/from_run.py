@@ -9,13 +9,19 @@ import os
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from analysis.runs.files import RunFolderError, array_names, read_bytes
 from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
 from yade_scripts.packings.files import OF_CONTACTS
-from yade_scripts.packings.packing import Packing, PackingError, centred, largest_cluster, random_stream
+from yade_scripts.packings.packing import (
+    Packing,
+    PackingError,
+    centred,
+    largest_cluster,
+    random_stream,
+    randomly_turned,
+)
 from yade_scripts.packings.rest import at_rest
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
 
@@ -113,8 +119,8 @@ def cut(state, parameters, index=0):
     about |= dict(state.material, index=index, dropped=len(inside) - len(kept))
     packing = Packing(position[inside[kept]], state.radius[inside[kept]], parameters.seed, about)
     rested = _at_rest(packing, pairs, grain_radius, state.overlap)
-    orientation = Rotation.random(random_state=stream)
-    return replace(rested, position=orientation.apply(rested.position - rested.position.mean(axis=0)))
+    centre = rested.position.mean(axis=0)
+    return replace(rested, position=randomly_turned(rested.position - centre, stream, False))
 
 
 def _at_rest(packing, pairs, grain_radius, overlap):
@@ -163,10 +169,6 @@ def largest_piece_of_run(path):
 def turned(packing, seed, index=0):
     """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in
     it."""
-    stream = random_stream(seed, index)
     planar = not np.any(packing.position[:, 2])
-    turn = (
-        Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)]) if planar else Rotation.random(random_state=stream)
-    )
-    position = turn.apply(packing.position) * (1, 1, 0 if planar else 1)
+    position = randomly_turned(packing.position, random_stream(seed, index), planar)
     return Packing(position, packing.radius, seed, {**packing.parameters, "index": index})

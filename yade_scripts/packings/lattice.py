@@ -9,10 +9,9 @@ hexagonal lattice, a circle, N = filling (R/r)^2.
 from math import ceil, pi, sqrt
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from analysis.theory.aggregates import fcc_filling
-from yade_scripts.packings.packing import Packing, PackingError, random_stream
+from yade_scripts.packings.packing import Packing, PackingError, random_stream, randomly_turned
 
 FCC_BASIS = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])  # in edges of the cubic cell
 
@@ -71,8 +70,7 @@ def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=
             f"{seed}, aggregate {index}); must be at most {at_most:.4f} here, {limit:.4f} in large spheres (A24 eq 40)"
         )
     kept = np.sort(stream.choice(len(sites), wanted, replace=False, shuffle=False))
-    turn = Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * pi)]) if planar else Rotation.random(random_state=stream)
-    position = turn.apply(sites[kept]) * (1, 1, 0 if planar else 1)
+    position = randomly_turned(sites[kept], stream, planar)
     about = dict(packing="cpe", filling=filling, aggregateRadius=aggregate_radius, grainRadius=grain_radius)
     about |= dict(overlap=overlap, index=index, **({"planar": 1} if planar else {}))
     return Packing(position, np.full(wanted, float(grain_radius)), seed, about)

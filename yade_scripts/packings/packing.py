@@ -5,6 +5,7 @@ from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.spatial.transform import Rotation
 
 from analysis.measures.fragments import belongs_to_an_aggregate, fragment_labels
 from analysis.measures.structure import fractal_dimension, grains_within, mean_coordination
@@ -41,6 +42,13 @@ def random_stream(seed, index, *more):
 def centred(position, radius):
     """Positions (N, 3) relative to the centre of mass of grains of one density and these radii (N,)."""
     return position - np.average(position, axis=0, weights=(radius / radius.max()) ** 3)
+
+
+def randomly_turned(position, stream, planar):
+    """Positions (N, 3) in a random orientation; planar: those in the plane z = 0, which stay there."""
+    if planar:
+        return Rotation.from_rotvec([0, 0, stream.uniform(0, 2 * np.pi)]).apply(position) * (1, 1, 0)
+    return Rotation.random(random_state=stream).apply(position)
 
 
 def moved(packing, shift):
@@ -123,11 +131,8 @@ def require_connected(packing):
 
 
 def description(packing):
-    """A line about a packing; lengths in mean radii.
-
-    The filling factor is the grains' volume over that of the sphere of the characteristic radius, the fractal dimension
-    the mean slope of the number of grains about a grain from NEAREST to the radius of gyration.
-    """
+    """A line about a packing; lengths in mean radii. The filling factor is that of the sphere of the characteristic
+    radius, the fractal dimension the mean slope of the number of grains about one from NEAREST to r_gyr."""
     pairs, radius = contacts(packing), packing.radius.mean()
     pieces = int(fragment_labels(packing.grains, pairs).max()) + 1
     characteristic, gyration = characteristic_radius(packing), gyration_radius(packing)

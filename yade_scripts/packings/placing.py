@@ -55,25 +55,12 @@ def _encounter(first, second, along, reach):
 
 
 def offset_pair(target, projectile, velocity, impact):
-    """Two aggregates on their way to each other, in the frame of their common centre of mass (A22 section 2.4).
+    """(packings, velocities (3,) [m/s]) of two aggregates on their way to each other, in the frame of their common
+    centre of mass (A22 section 2.4): so far apart that they first touch after START_GAP, or, where they pass each
+    other, that the spheres around them touch in x.
 
-    A22 doesn't say how far apart its aggregates start: here so that they first touch after START_GAP; those that pass
-    each other start where the spheres around them touch in x.
-
-    Parameters
-    ----------
-    target, projectile : Packing
-        Around their centres of mass.
-    velocity : float
-        Of the projectile relative to the target, along -x [m/s].
-    impact : float
-        Offset of the centres in y over r_c,tar + r_c,pro (A22 eq 27; packing.characteristic_radius).
-
-    Returns
-    -------
-    (packings, velocities)
-        Of target and projectile, in their places; velocities (3,) [m/s].
-    """
+    target, projectile: around their centres of mass; velocity: of the projectile relative to the target, along -x
+    [m/s]; impact: offset of the centres in y over r_c,tar + r_c,pro (A22 eq 27)."""
     mass = np.array([(packing.radius**3).sum() for packing in (target, projectile)])
     largest = max(target.radius.max(), projectile.radius.max())
     offset = impact * (characteristic_radius(target) + characteristic_radius(projectile))

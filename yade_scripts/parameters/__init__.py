@@ -131,11 +131,8 @@ class Parameters:
 
     @classmethod
     def parse(cls, texts, description=None):
-        """Parameters from {name: text or number}, with what follows from them (see filled_in of each class).
-
-        Numbers may be written as arithmetic (10**0.5), text with or without quotes. description: of a table's row.
-        Raises ParameterError. Makes no packing and needs no YADE.
-        """
+        """Parameters from {name: text or number}, with what follows from them (filled_in()). Numbers may be written as
+        arithmetic (10**0.5), text with or without quotes. description: of a table's row. Raises ParameterError."""
         columns, values = cls.columns(), {}
         for name, text in texts.items():
             if name not in columns:

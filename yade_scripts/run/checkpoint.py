@@ -94,9 +94,7 @@ class Checkpoint:
 class CheckpointWriter:
     """Saves the running scene and a recorder's history every `interval` seconds of wall time.
 
-    folder: the RunFolder; run: the dictionary of run.json, with parameters, derived, versions and commit; wall_time():
-    seconds that the run has taken, those before earlier interruptions included.
-    """
+    folder: the RunFolder; run: the dictionary of run.json; wall_time(): seconds that the run has taken so far."""
 
     def __init__(self, folder, run, recorder, wall_time, interval):
         self.folder = folder

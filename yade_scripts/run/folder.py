@@ -32,11 +32,8 @@ class RunFolder:
     """Writer of one run, which has the folder until close().
 
     Makes the folder, or removes the files of an earlier run from it if it may. With resume, a folder with a
-    checkpoint is left as it is, and .checkpoint is that checkpoint, otherwise None.
-
-    Raises InputError when the folder can't be written, holds something else, is being written by another run, holds a
-    run that has ended and overwrite is false, or one that was stopped and neither resume nor overwrite is true, or a
-    checkpoint that can't be read. What write...() raises is OSError."""
+    checkpoint is left as it is, and .checkpoint is that checkpoint, otherwise None. Raises InputError when the folder
+    can't be used; what write...() raises is OSError."""
 
     def __init__(self, path, overwrite=False, resume=False):
         self.path, self.checkpoint = path, None
@@ -118,10 +115,8 @@ class RunFolder:
         return os.path.exists(os.path.join(self.path, ENDED_FILE))
 
     def _remove(self, wanted):
-        """Remove the files of runs whose name is wanted, and what killed writers have left.
-
-        The mark of the end goes first, then recorder.npz, without which a checkpoint is none; run.json, by which a
-        folder is known as a run's, goes last."""
+        """Remove the files of runs whose name is wanted, and what killed writers have left: the mark of the end first,
+        then recorder.npz, without which a checkpoint is none; last run.json, by which a folder is known as a run's."""
         found = []
         for folder in ("", STATES_FOLDER, CHECKPOINT_FOLDER):
             place = os.path.join(self.path, folder)

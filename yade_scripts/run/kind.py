@@ -22,11 +22,10 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A run that is ready to be built in YADE.
+    """A run that is ready to be built in YADE. States are those of contact_law.snapshot(), with `aggregate`.
 
-    control(recorder, state) is called after each sample, may change the scene (a cell's velGrad), and is true when the
-    run is at its end before `duration` is over. It must follow from the recorder's history, the state and the scene
-    alone, so that a run resumes. States are those of contact_law.snapshot(), with `aggregate`."""
+    control(recorder, state) is called after each sample, may change the scene, and is true when the run is at its end
+    before `duration` is over; it must follow from history, state and scene alone, so that a run resumes."""
 
     parameters: Any  # of the kind, complete, with a duration and a number as stepFraction
     constants: Mapping  # of a contact, as run.scene.pair_constants() gives them
@@ -84,10 +83,8 @@ class Schedule:
 
     @classmethod
     def of(cls, duration, time_step, interval=50, states=22, kept=None):
-        """At most `interval` steps between samples, and at least FEWEST_SAMPLES if the steps suffice.
-
-        Runs of more than MOST_SAMPLES intervals are sampled less often. kept: the interval of a run that is continued.
-        """
+        """At most `interval` steps between samples, at least FEWEST_SAMPLES and at most MOST_SAMPLES intervals if the
+        steps suffice. kept: the interval of a run that is continued."""
         steps = max(1, ceil(duration / time_step * (1 - 1e-12)))
         interval = kept or max(1, min(interval, steps // FEWEST_SAMPLES), ceil(steps / MOST_SAMPLES))
         samples = ceil(steps / interval)

@@ -123,15 +123,10 @@ def from_arguments(arguments):
 
 
 def gather(arguments, kind):
-    """A script's parameters: the row of a table, and the arguments on top of it.
+    """({name: text}, description) of a script: the row of a table, and the arguments on top of it. The description is
+    None without a row, and where an argument of consequence makes another run of it.
 
-    The row is the one that yade-batch names (YADE_BATCH=FILE:LINE), or that of an argument table=FILE:LINE.
-
-    Returns
-    -------
-    ({name: text}, str or None)
-        The row's description; None without a row, and where an argument of consequence makes another run of it.
-    """
+    The row is the one that yade-batch names (YADE_BATCH=FILE:LINE), or that of an argument table=FILE:LINE."""
     texts = from_arguments(arguments)
     where = texts.pop("table", None) or os.environ.get("YADE_BATCH")
     if not where:

@@ -37,11 +37,10 @@ def engine_counts():
 class Recorder:
     """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
 
-    kind_format: a RunKind of analysis.runs.format, which names the columns; scene: of run.kind, for its series, the
-    grains' aggregates, whether its energy is conserved, and when it ends: .finished is true from then on.
-    Optional series are those of the kind's that the scene or the engine's statistics() have at the first sample; broken
-    bonds by mode where there are bonds then, and in states where there are any.
-    An exception is kept in .error for the loop to find (YADE would print pages of it), never lost.
+    kind_format: a RunKind, which names the columns; scene: a run.kind.Scene, at whose end .finished becomes true.
+    Optional series are those that the scene or the engine's statistics() have at the first sample; broken bonds by mode
+    where there are bonds then, and in states where there are any. An exception is kept in .error for the loop to find
+    (YADE would print pages of it).
     """
 
     def __init__(self, folder, schedule, kind_format, scene):
@@ -148,10 +147,8 @@ class Recorder:
         finite = np.isfinite(state["position"])
         if not finite.all():
             raise RunFailed(f'body {state["ids"][~finite.all(axis=1)][0]} has no finite position {when}')
-        if self.scene.energy_is_conserved:
-            self._require_conserved(state, energies, when)
-
-    def _require_conserved(self, state, energies, when):
+        if not self.scene.energy_is_conserved:
+            return
         first = dict(zip(self.columns, self._rows[0])) if self._rows else energies
         start = {channel: first[channel] for channel in CHANNELS}
         more = sum(energies.values()) - sum(start.values())

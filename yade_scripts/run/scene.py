@@ -29,11 +29,10 @@ def material_of(grains):
 
 
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
-    """The plugin's constants (SI) of a contact between two grains of the run, and of a bond under 'bond'.
+    """The plugin's constants (SI) of a contact between two grains of the run that have not sintered; under 'bond' None,
+    or where grains are sintered the attributes of JKRWadaBond and shrunkRadius [m].
 
-    grains: materials.GrainParameters with slidingStiffnessFactor. The former are of grains that have not sintered, as
-    packings and the time unit have them; 'bond' is None when nothing is sintered, else the attributes of JKRWadaBond
-    and shrunkRadius [m]."""
+    grains: materials.GrainParameters with slidingStiffnessFactor."""
     two = 2 * (material_of(grains), grains.grainRadius)
     constants = {**_functor(grains, linearDamping).pairConstants(*two), "bond": None}
     if neck:
@@ -79,9 +78,8 @@ def add_plane(axis, position, material, velocity=0.0):
 def start(scene, schedule, recorder):
     """Build a run.kind.Scene and its engines: (O.steps to take, the sampling PyRunner, a function to call first).
 
-    The fused engine takes the steps between two samples in one O.step, and its start is sampled first. With the
-    functors a sample comes at the beginning of a step, so that one more step is taken to sample the end.
-    """
+    The fused engine takes the steps between two samples in one O.step. With the functors a sample comes at the
+    beginning of a step, so that one more is taken to sample the end."""
     omega, parameters = Omega(), scene.parameters
     scene.build()
     omega.trackEnergy = True

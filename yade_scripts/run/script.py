@@ -23,10 +23,9 @@ from yade_scripts.time_step import AUTO, require_countable
 
 
 def main(kind, description):
-    """Run the parameters of the command line or of yade-batch, and end the process.
+    """Run the parameters of the command line or of yade-batch, and end the process; called within YADE.
 
-    kind: run.kind.Kind; description: what --help prints before the parameters. To be called within YADE.
-    """
+    kind: run.kind.Kind; description: what --help prints before the parameters."""
     begun = time.monotonic()
     script = os.path.basename(sys.argv[0])
     if "--help" in sys.argv[1:]:
@@ -36,9 +35,9 @@ def main(kind, description):
         print(f"{script} {version_text()}")
         sys.exit(0)
     with one_line_errors(script):
-        texts, row = gather(sys.argv[1:], kind)
         if "yade" not in sys.modules:
             raise InputError(f"must be run by YADE: yade -n -x {sys.argv[0]} velocity=3, say")
+        texts, row = gather(sys.argv[1:], kind)
         parameters = checkpoint.continued(kind, texts) if checkpoint.CONTINUE in texts else kind.parse(texts, row)
         from yade.wrapper import Omega
 
@@ -134,10 +133,8 @@ def _carry_out(kind, scene, schedule, folder, begun):
 def _step(steps, recorder, runner, begin, writer):
     """Call begin(), and step until that many O.steps are taken or the scene is at its end; (outcome, exit status).
 
-    recorder samples from the PyRunner `runner`. Ctrl-C and SIGTERM end the run after the step that is being taken,
-    with a checkpoint and one more step that records where it stopped; the outcome is then "interrupted". A scene from
-    a checkpoint has taken some of the steps; one that has ended before its time (recorder.finished) takes no more.
-    """
+    Ctrl-C and SIGTERM end the run after the step that is being taken, with a checkpoint and one more step that records
+    where it stopped (runner samples it); the outcome is then "interrupted"."""
     from yade.wrapper import Omega
 
     omega, stop = Omega(), StopSignals()

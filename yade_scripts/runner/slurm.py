@@ -35,29 +35,34 @@ from yade_scripts.runner import rows
 from yade_scripts.runner.batch import Batch, StudyFolder
 
 ROWS, SCRIPT, JOB = "rows.table", "job.sh", "job"
-BEFORE_THE_LIMIT = 60  # s
 LARGEST = 1000  # tasks of an array, by Slurm's default MaxArraySize
 SHORT, TASK = 60, 600  # s that a row may take to share a task with others, and that these take together, roughly
 OVER = "COMPLETED CANCELLED FAILED TIMEOUT NODE_FAIL BOOT_FAIL DEADLINE OUT_OF_MEMORY PREEMPTED".split()
 POLL = 0.1  # s
-_FOLDER = re.compile(r"slurm-(\d+)")
+# USR1 comes 60 s before the time limit.
+TEXT = """#!/bin/sh
+#SBATCH --job-name={name}
+#SBATCH --array=1-{tasks}{at_once}
+#SBATCH --cpus-per-task={threads}
+#SBATCH --signal=B:USR1@60
+#SBATCH --requeue
+#SBATCH --open-mode=append
+#SBATCH --output={output}
+exec {task} "$SLURM_ARRAY_TASK_ID" {tasks}
+"""
 
 
 def arrays(left):
     """[([row, ...], number of tasks), ...] of rows that are left: those that take as many processors each make an
-    array of at most LARGEST tasks."""
+    array of at most LARGEST tasks, short ones (of known time) with others in one task."""
+    kind = lambda row: (row.threads, (row.expected_seconds or SHORT) < SHORT)
     found = []
-    for (_, short), group in groupby(sorted(left, key=_uniform), key=_uniform):
+    for (_, short), group in groupby(sorted(left, key=kind), key=kind):
         group = list(group)
         tasks = ceil(sum(row.expected_seconds for row in group) / TASK) if short else len(group)
         number = ceil(tasks / LARGEST)
         found += [(group[k::number], ceil(tasks / number)) for k in range(number)]
     return found
-
-
-def _uniform(row):
-    """(threads, whether it is short) of a row; one of unknown time is long."""
-    return row.threads, (row.expected_seconds or SHORT) < SHORT
 
 
 def jobs(study_folder, left, at_once=None):
@@ -71,22 +76,16 @@ def jobs(study_folder, left, at_once=None):
     found, first = [], max(_numbers(study_folder), default=0) + 1
     for number, (group, tasks) in enumerate(arrays(left), first):
         folder = study_folder.file(f"slurm-{number}")
-        found.append((folder, group, tasks, _script(name, folder, group[0].threads, tasks, at_once)))
+        script = TEXT.format(
+            name=name,
+            tasks=tasks,
+            at_once=f"%{at_once}" if at_once else "",
+            threads=group[0].threads,
+            output=os.path.join(folder, "%a.out"),
+            task=shlex.join([sys.executable, os.path.abspath(__file__), os.path.join(folder, ROWS)]),
+        )
+        found.append((folder, group, tasks, script))
     return found
-
-
-def _script(name, folder, threads, tasks, at_once):
-    task = shlex.join([sys.executable, os.path.abspath(__file__), os.path.join(folder, ROWS)])
-    return f"""#!/bin/sh
-#SBATCH --job-name={name}
-#SBATCH --array=1-{tasks}{f"%{at_once}" if at_once else ""}
-#SBATCH --cpus-per-task={threads}
-#SBATCH --signal=B:USR1@{BEFORE_THE_LIMIT}
-#SBATCH --requeue
-#SBATCH --open-mode=append
-#SBATCH --output={os.path.join(folder, "%a.out")}
-exec {task} "$SLURM_ARRAY_TASK_ID" {tasks}
-"""
 
 
 def command(folder, options):
@@ -138,11 +137,8 @@ def queued(study_folder, sure=False):
 
 
 def _numbers(study_folder):
-    try:
-        names = os.listdir(study_folder.path)
-    except FileNotFoundError:
-        return []
-    return sorted(int(found.group(1)) for found in map(_FOLDER.fullmatch, names) if found)
+    names = os.listdir(study_folder.path) if os.path.isdir(study_folder.path) else []
+    return sorted(int(name[6:]) for name in names if re.fullmatch(r"slurm-\d+", name))
 
 
 # ---- what Slurm runs ----
