@@ -11,10 +11,7 @@
 Numbers may be written as arithmetic: strainRate=3*10**-7. K13 is Kataoka et al. (2013), A22 Arakawa et al. (2022),
 S17 Sirono & Ueno (2017), W07 Wada et al. (2007); t0 is the time unit of the contact.
 
-Exit status: 0 when the run came to its planned end, 2 for a wrong parameter (one line on stderr, and nothing was run),
-1 when the run failed, 130 or 143 when Ctrl-C or SIGTERM stopped it. The last two leave a run folder that can be read,
-with a checkpoint; a killed run leaves its last one. resume=1 resumes from it, and so does continue=FOLDER, which takes
-all parameters from the run's folder.
+Exit status, resume=1 and continue=FOLDER: as of collide.py.
 """
 
 import os

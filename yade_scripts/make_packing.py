@@ -30,8 +30,7 @@ from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.from_run import CutParameters, cut, holds, read_periodic_state
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.packings.packing import description
-from yade_scripts.parameters import ParameterError, one_of, parameter
-from yade_scripts.parameters.errors import one_line_errors
+from yade_scripts.parameters import ParameterError, one_line_errors, one_of, parameter
 from yade_scripts.run.parameters import from_arguments
 
 
@@ -39,9 +38,7 @@ from yade_scripts.run.parameters import from_arguments
 class MadeParameters(AggregateParameters):
     """How the aggregates are made."""
 
-    packing: str = parameter(
-        "cpe", one_of(MADE), "close-packed and extracted, cluster-cluster or particle-cluster aggregation"
-    )
+    packing: str = parameter("cpe", one_of(MADE), "close-packed and extracted, cluster-cluster or particle-cluster")
 
 
 def _save(file, packing):

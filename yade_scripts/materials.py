@@ -6,9 +6,9 @@ from functools import lru_cache
 from analysis import theory
 from analysis.theory.pair_constants import GRAIN_RADII
 from yade_scripts.parameters import (
+    NOT_NEGATIVE,
     POSITIVE,
     SWITCH,
-    Check,
     ParameterError,
     Parameters,
     Usual,
@@ -35,6 +35,9 @@ MATERIALS = {
     name: Material(theory.GRAIN_RADIUS[name], of.young, of.poisson, of.density, of.surface_energy, of.critical_rolling)
     for name, of in theory.MATERIALS.items()
 }
+VALUES = "; ".join(
+    f"{name}: " + ", ".join(f"{key} {value:g}" for key, value in asdict(of).items()) for name, of in MATERIALS.items()
+)
 _pair_constants, _bond_constants = lru_cache(theory.pair_constants), lru_cache(theory.bond_constants)
 
 GRAINS = Usual(*GRAIN_RADII, "smallest soot monomers to chondrules")
@@ -45,34 +48,21 @@ ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al.
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 
 
-def _values(name):
-    """The properties of a material in words."""
-    return f"{name}: " + ", ".join(f"{key} {value:g}" for key, value in asdict(MATERIALS[name]).items())
-
-
 @dataclass(frozen=True)
 class GrainParameters(Parameters):
     """The grains. Each property is that of `material` unless it is given."""
 
     material: str = parameter(
-        "ice",
-        one_of(list(MATERIALS)),
-        f"whose properties the grains have, each unless it is given below ({'; '.join(map(_values, MATERIALS))})",
+        "ice", one_of(list(MATERIALS)), f"whose properties the grains have, each unless it is given below ({VALUES})"
     )
     grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m", usual=GRAINS)
     young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
     poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")
     density: float | None = parameter(None, POSITIVE, "density", "kg/m^3", usual=DENSITY)
     surfaceEnergy: float | None = parameter(None, POSITIVE, "surface energy gamma", "J/m^2", usual=SURFACE)
-    criticalRolling: float | None = parameter(
-        None, POSITIVE, "critical rolling displacement xi_crit", "m", usual=ROLLING
-    )
-    viscoelasticTime: float = parameter(
-        0.0, Check(">= 0", lambda x: x >= 0), "T_vis of the viscous drag (A22 eq 7); 0: no drag", "s", usual=DRAG
-    )
-    unusual: int = parameter(
-        0, SWITCH, "1: values outside of their usual ranges are meant so, not slips of the unit", of_consequence=False
-    )
+    criticalRolling: float | None = parameter(None, POSITIVE, "critical displacement of rolling", "m", usual=ROLLING)
+    viscoelasticTime: float = parameter(0.0, NOT_NEGATIVE, "T_vis of drag (A22 eq 7); 0: no drag", "s", usual=DRAG)
+    unusual: int = parameter(0, SWITCH, "1: values outside of their usual ranges are meant", of_consequence=False)
 
     def filled_in(self):
         """The material's properties where none are given."""
@@ -113,13 +103,8 @@ def equilibrium_overlap(grains):
 
 
 def require_small_contacts(constants):
-    """Raise ParameterError when adhesion presses grains together so much that the JKR theory means nothing.
-
-    constants: of a contact, by the plugin's names.
-    """
+    """Raise ParameterError when adhesion presses grains together so much that the JKR theory means nothing."""
     radius, contact = 2 * constants["reducedRadius"], constants["equilibriumContactRadius"]
     if contact >= 0.5 * radius:
-        raise ParameterError(
-            f"grainRadius = {radius:g}: contacts at rest have a radius of {contact / radius:.2g} grain radii; must be "
-            f"less than 0.5, with larger or stiffer grains or less surfaceEnergy"
-        )
+        given = f"grainRadius = {radius:g}: contacts at rest have a radius of {contact / radius:.2g} grain radii"
+        raise ParameterError(f"{given}; must be less than 0.5, with larger or stiffer grains or less surfaceEnergy")

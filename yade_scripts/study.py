@@ -31,10 +31,10 @@ from analysis.startup import end_quietly, require_libraries
 
 end_quietly(signal.SIGINT)
 require_libraries()
-from analysis.printable import meant, printable, shell_line
+from analysis.printable import printable, shell_line
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from analysis.version import version_text
-from yade_scripts.parameters.errors import InputError, tell
+from yade_scripts.parameters import one_line_errors, tell
 from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
@@ -121,31 +121,23 @@ def close(study, states, stop):
 
 def main(arguments):
     options = parse_arguments(arguments)
-    table = options.table
-    try:
-        if not os.path.exists(table):
-            table = tables.find(table) or table  # one of the suite, which is written
-        if options.status and place_of(table) != Path.cwd():
-            place, table = place_of(table), os.path.abspath(table)
+    with one_line_errors(SCRIPT):
+        table = options.table if os.path.exists(options.table) else tables.find(options.table)
+        if options.status and (place := place_of(table)) != Path.cwd():
+            table = os.path.abspath(table)
             os.chdir(place)
         study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
-            print(study.table(states) + study.undecided(states), flush=True)
+            try:
+                print(study.table(states) + study.undecided(states), flush=True)
+            except BrokenPipeError:  # of --status | head
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
         if not options.dry_run:
             study.folder.lock()
         if options.slurm:
             return submit(study, options)
-    except BrokenPipeError:  # of --status | head
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except InputError as error:
-        tell(f"{error}{'' if os.path.exists(table) else meant(table, tables.names())}", SCRIPT)
-        return 2
-    except OSError as error:
-        tell(f"{error.filename}: {error.strerror}", SCRIPT)
-        return 2
     stop = StopSignals(STOPPING if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN else STOPPING[:2])  # nohup
     wrong = [row for row in study.rows if row.error]
     for row in wrong:

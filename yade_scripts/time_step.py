@@ -11,8 +11,7 @@ from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
 
 AUTO = "auto"
-# The leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of Arakawa et al. (2024), without drag
-# (measured).
+# Measured: the leapfrog is stable at 0.4 t0 and blows up at 0.5 t0 in the collision of A24, without drag.
 STABLE_STEP = 0.4
 SAFETY = STABLE_STEP / 0.5
 # An hour for 50 grains, a week for 6,000: longer than any run on a desk machine.
@@ -41,10 +40,9 @@ def reason(parameters, limit):
 
 def require_countable(duration, time_step):
     """Raise ParameterError when a run [s] would take more than MOST_STEPS steps [s]."""
-    if duration > MOST_STEPS * time_step:
-        raise ParameterError(
-            f"duration = {duration:.6g}: must be at most {MOST_STEPS:g} steps, {MOST_STEPS * time_step:.3g} s"
-        )
+    most = MOST_STEPS * time_step
+    if duration > most:
+        raise ParameterError(f"duration = {duration:.6g}: must be at most {MOST_STEPS:g} steps, {most:.3g} s")
 
 
 # ---- stability (contact_law/MODEL.md, "What packings allow") ----
@@ -53,9 +51,8 @@ def require_countable(duration, time_step):
 def require_stable(step, limit, depends_on):
     """Raise ParameterError when a stepFraction is above its limit; depends_on: words for what sets that."""
     if step > limit:
-        raise ParameterError(
-            f"stepFraction = {step:g}: unstable at this {depends_on}; must be at most {limit:.3g} [t0]"
-        )
+        must = f"must be at most {limit:.3g} [t0]"
+        raise ParameterError(f"stepFraction = {step:g}: unstable at this {depends_on}; {must}")
 
 
 def step_limit(constants, filling):
@@ -88,9 +85,8 @@ def bond_step(constants):
 def equivalent_filling(packing, filling, planar, constants):
     """Filling factor of the CPE packing in space whose grains meet as much resistance when all turn in phase.
 
-    packing, filling, planar: of a collision. Of 12 contacts of a site in space two thirds resist, of 6 in a plane all
-    (a fraction of 3/4); of a BCCA or BPCA aggregate four are taken (1/2), which is more than most grains have; a
-    packing from a file may be as dense as the lattice."""
+    Of 12 contacts of a site in space two thirds resist, of 6 in a plane all (3/4); of BCCA and BPCA aggregates four are
+    taken (1/2), more than most grains have; a packing from a file may be as dense as the lattice."""
     radius, overlap = 2 * constants["reducedRadius"], constants["equilibriumOverlap"]
     full = maximum_filling(radius, overlap)
     if packing in ("bcca", "bpca"):
@@ -114,15 +110,11 @@ ROLLING_OF_ICE = 12.0  # F_c delta_c
 
 
 def longest_step(error, tolerance, limit):
-    """The longest step [t0] that keeps to a tolerance, rounded down to two digits, at most limit [t0].
-
-    error: of the ledger, over the square of the step. Raises ParameterError for a step shorter than SHORTEST."""
+    """The longest step [t0] of two digits for a tolerance, at most limit [t0]; error: over the square of the step."""
     step = math.sqrt(tolerance / error)
     if step < SHORTEST:
-        raise ParameterError(
-            f"tolerance = {tolerance:g}: would take a step of {step:.2g} t0; must be at least "
-            f"{1.06 * error * SHORTEST**2:.2g} in this scene, for {SHORTEST:g} t0, or stepFraction a number"
-        )
+        least = f"{1.06 * error * SHORTEST**2:.2g} in this scene, for {SHORTEST:g} t0"
+        raise ParameterError(f"tolerance = {tolerance:g}: would take a step of {step:.2g} t0; must be at least {least}")
     unit = 10.0 ** (math.floor(math.log10(step)) - 1)
     return min(limit, float(f"{math.floor(round(step / unit, 9)) * unit:.2g}"))
 
@@ -135,8 +127,7 @@ def _require_measured(*unmeasured):
 
 
 def collision_error(parameters, constants):
-    """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level. Raises ParameterError for a
-    collision of a kind that was not measured."""
+    """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level. Raises ParameterError."""
     sliding, velocity = parameters.slidingStiffnessFactor, parameters.velocity
     _require_measured(
         (parameters.packing == "file", "packing = file"),
@@ -180,8 +171,7 @@ def ledger_error(kinetic, of_grain):
 
 
 def compression_error(parameters, constants):
-    """Error of a compression's ledger [work of the boundaries] over the square of the step [t0], 95 % level. Raises
-    ParameterError for a compression of a kind that was not measured."""
+    """Error of a compression's ledger [work of the boundaries], likewise."""
     # E_roll = 6 pi^2 gamma R xi_crit (K13 eq 1) over F_c delta_c; F_c = 3 pi gamma R/2
     rolling = 4 * math.pi * constants["criticalRolling"] / constants["pullOffOverlap"]
     final, sliding = parameters.finalFilling, parameters.slidingStiffnessFactor

@@ -10,10 +10,9 @@ from refused import refused
 from running import make_packing
 
 from yade_scripts import packings
-from yade_scripts.experiments.collision import KIND, CollisionParameters, place
-from yade_scripts.experiments.collision_step import limit_of_unlike, require_stable_with
+from yade_scripts.experiments.collision import KIND, CollisionParameters, limit_of_unlike, place, require_stable_with
 from yade_scripts.packings.aggregate import make
-from yade_scripts.packings.files import OF_CONTACTS, packing_from_file
+from yade_scripts.packings.packing import OF_CONTACTS, packing_from_file
 from yade_scripts.parameters import ParameterError
 
 

@@ -10,8 +10,8 @@ from scenes import *
 from written_runs import PAIR, cubic_lattice, losing, record, state_arrays, write_run
 
 from yade_scripts import packings
-from yade_scripts.packings.files import packing_from_file
 from yade_scripts.packings.from_run import CutParameters, PeriodicState, cut, largest_piece_of_run, turned
+from yade_scripts.packings.packing import packing_from_file
 
 
 def pressed_lattice(noise=0.0):

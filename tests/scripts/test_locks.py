@@ -10,7 +10,7 @@ import pytest
 from analysis.runs import lock
 from analysis.runs.format import LOCK_FILE
 from analysis.runs.lock import Lock, read_lock, under_way
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError
 from yade_scripts.run.folder import RunFolder
 
 ELSEWHERE = Lock("node7", "another boot", 99)

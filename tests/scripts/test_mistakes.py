@@ -8,7 +8,7 @@ from running import PYTHON, SCRIPTS, call, messages
 
 from analysis.__main__ import main as analysis
 from yade_scripts import make_packing, study
-from yade_scripts.parameters.errors import one_line_errors
+from yade_scripts.parameters import one_line_errors
 
 TABLES = {
     "commas.table": "packing,grains,velocity\nbcca,20,3\n",

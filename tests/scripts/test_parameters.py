@@ -8,12 +8,11 @@ import pytest
 from refused import refused
 
 from yade_scripts import time_step
-from yade_scripts.experiments import collision_step
+from yade_scripts.experiments import collision
 from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.materials import MATERIALS, pair_constants
 from yade_scripts.packings import grain_number
-from yade_scripts.parameters import ParameterError
-from yade_scripts.parameters.arithmetic import NotANumber, evaluate
+from yade_scripts.parameters import NotANumber, ParameterError, evaluate
 from yade_scripts.run import parameters as arguments
 
 parse = CollisionParameters.parse
@@ -26,7 +25,7 @@ def with_drag(time):
 
 
 def complete(texts, constants=ICE_PAIR, threads=1):
-    return collision_step.complete(parse(texts), constants, threads)
+    return collision.complete(parse(texts), constants, threads)
 
 
 def test_defaults_are_the_scene_of_the_demo_and_stay():

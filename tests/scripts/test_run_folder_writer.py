@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from refused import refused
 
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import MOST_SAMPLES, Schedule
 

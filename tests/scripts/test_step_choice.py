@@ -8,7 +8,7 @@ from scipy.stats import binom
 
 from analysis import table
 from yade_scripts import time_step
-from yade_scripts.experiments import collision, collision_step, compression
+from yade_scripts.experiments import collision, compression
 from yade_scripts.experiments.collision import KIND
 from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import ParameterError
@@ -29,9 +29,8 @@ def chosen(**given):
         limit = time_step.step_limit(constants, parameters.finalFilling or compression.FINAL_FILLING)
     else:
         constants = {"bond": None, **pair_constants(parameters, neck=parameters.neck)}
-        limit = collision_step.step_limit(parameters, constants)
-    of_kind = compression if kind is compression else collision_step
-    return of_kind.complete(parameters, constants, 1), constants, limit
+        limit = collision.step_limit(parameters, constants)
+    return kind.complete(parameters, constants, 1), constants, limit
 
 
 def expected_error(parameters, constants):
@@ -136,7 +135,7 @@ def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path):
     ],
 )
 def test_what_was_not_measured_is_refused(given, what):
-    kind = compression if "strainRate" in given else collision_step
+    kind = compression if "strainRate" in given else collision
     parameters = (compression if "strainRate" in given else collision).KIND.parse({**AUTO, **given})
     with refused(ParameterError, f"stepFraction = auto: not measured with {what}"):
         kind.complete(parameters, pair_constants(parameters), 1)

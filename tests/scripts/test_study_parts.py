@@ -7,7 +7,7 @@ import pytest
 from analysis.runs.status import DONE, RUNNING, WAITING, State
 from yade_scripts import packings
 from yade_scripts.experiments.collision import KIND
-from yade_scripts.packings.files import sum_of_file
+from yade_scripts.packings.packing import sum_of_file
 from yade_scripts.run import checkpoint, table
 from yade_scripts.runner import rows
 from yade_scripts.runner.study import Study

@@ -22,8 +22,8 @@ def paths(tmp_path_factory):
     """{name: path} of all tables, as they are written."""
     folder = tmp_path_factory.mktemp("tables")
     return {
-        name: os.path.join(STUDIES, f"{name}.table") if name in ("demo", "seeds") else tables.write(name, folder)
-        for name in tables.names()
+        name: os.path.join(STUDIES, f"{name}.table") if name in tables.EXAMPLES else tables.write(name, folder)
+        for name in [*tables.of_studies(), *tables.EXAMPLES]
     }
 
 
@@ -60,7 +60,7 @@ def test_tables_are_read_as_yade_reads_them(tmp_path, paths):
 @pytest.mark.in_yade
 def test_the_step_of_every_row_is_stable(paths):
     """What runs refuse of grains, necks and steps before packings are made."""
-    from yade_scripts.experiments import collision_step, compression
+    from yade_scripts.experiments import collision, compression
     from yade_scripts.parameters import ParameterError
     from yade_scripts.run.scene import pair_constants
 
@@ -74,8 +74,8 @@ def test_the_step_of_every_row_is_stable(paths):
         if alike in known:
             continue
         known.add(alike)
-        experiment = compression if row.kind.name == COMPRESSION.name else collision_step
-        own = {"neck": p.neck} if experiment is collision_step else {"linearDamping": p.linearDamping}
+        experiment = compression if row.kind.name == COMPRESSION.name else collision
+        own = {"neck": p.neck} if experiment is collision else {"linearDamping": p.linearDamping}
         try:
             experiment.complete(p, pair_constants(p, **own), 1)
         except ParameterError as error:

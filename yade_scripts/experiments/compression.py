@@ -6,7 +6,7 @@ that nothing meets its images across the plates. The filling factor is that betw
 the forces on both over their area."""
 
 from dataclasses import dataclass
-from math import log, pi
+from math import ceil, log, pi
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from yade_scripts.experiments import compression_end as end
 from yade_scripts.experiments.compression_end import AXES, LOOSE, deform, shrinking_rate
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
-from yade_scripts.packings.ballistic import rbd, square_for
+from yade_scripts.packings.ballistic import rbd
 from yade_scripts.packings.placing import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
@@ -124,16 +124,8 @@ class CompressionParameters(GrainParameters, RunParameters):
         return 1 if self.boundary == WALLS else 3
 
 
-def densest(constants):
-    """Filling factor of random close packing of grains that overlap as contacts at rest do (K13 eq 22 counts overlaps
-    twice)."""
-    diameter = 4 * constants["reducedRadius"]
-    return CLOSE_PACKED * (diameter / (diameter - constants["equilibriumOverlap"])) ** 3
-
-
 def complete(parameters, constants, threads):
-    """The parameters with what depends on the contact (run.scene.pair_constants()) and on YADE's threads. Raises
-    ParameterError."""
+    """The parameters with what depends on the contact and on YADE's threads. Raises ParameterError."""
     require_small_contacts(constants)
     return with_step(_with_final_filling(parameters, constants), constants).with_threads(threads)
 
@@ -146,21 +138,19 @@ def with_step(parameters, constants):
 
 
 def _with_final_filling(parameters, constants):
-    limit, final = densest(constants), parameters.finalFilling
+    # random close packing of grains that overlap as contacts at rest do (K13 eq 22 counts overlaps twice)
+    diameter, final = 4 * constants["reducedRadius"], parameters.finalFilling
+    limit = CLOSE_PACKED * (diameter / (diameter - constants["equilibriumOverlap"])) ** 3
     if final is None:
         final = limit if parameters.finalPressure else FINAL_FILLING
     if final > limit:
-        raise ParameterError(
-            f"finalFilling = {final:g}: beyond random close packing; must be at most {limit:.3f} for these grains"
-        )
+        raise ParameterError(f"finalFilling = {final:g}: beyond random close packing; must be at most {limit:.3f}")
     fewest = final * SMALLEST_EDGE**3 / (4 / 3 * pi)
     if parameters.boundary == WALLS:  # the plates that far apart
         fewest *= (final / DEPOSITED) ** 2
     if parameters.grains < fewest:
-        raise ParameterError(
-            f"grains = {parameters.grains}: the cell would be too small at a filling of {final:.3g}; must be at least "
-            f"{fewest:.0f}, or finalFilling at most {parameters.grains / fewest * final:.3g}"
-        )
+        must = f"must be at least {fewest:.0f}, or finalFilling at most {parameters.grains / fewest * final:.3g}"
+        raise ParameterError(f"grains = {parameters.grains}: too few for a cell at a filling of {final:.3g}; {must}")
     parameters.require_stretched_below(final)
     return parameters.changed(finalFilling=final)
 
@@ -174,8 +164,8 @@ def prepare(parameters, threads):
 
     constants = yade_scene.pair_constants(parameters, linearDamping=parameters.linearDamping)
     parameters = complete(parameters, constants, threads)
-    make = _layer if parameters.boundary == WALLS else _cluster
-    packing, edges, build, own_series = make(parameters, constants)
+    walls = parameters.boundary == WALLS
+    packing, edges, build, own_series = (_layer if walls else _cluster)(parameters, constants)
     time_unit = constants["timeUnit"]
     parameters = parameters.changed(initialFilling=filling_factor(packing.radius, edges))
     parameters = end.with_start(parameters, time_unit)
@@ -189,7 +179,7 @@ def prepare(parameters, threads):
         return ending.is_pressed(recorder)
 
     rolling = parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
-    height = {"initialHeight": edges[UP]} if parameters.boundary == WALLS else {}
+    height = {"initialHeight": edges[UP]} if walls else {}
     between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
     return Scene(
         parameters=parameters,
@@ -200,7 +190,7 @@ def prepare(parameters, threads):
         series=own_series,
         law={"linearDamping": parameters.linearDamping},
         energy_is_conserved=parameters.engine == "fused",
-        control=come_down if parameters.boundary == WALLS else ending,
+        control=come_down if walls else ending,
         ended_by=ending.ended_by,
         interval=max(1, round(between / parameters.stepFraction)),
         step_choice=time_step.reason(parameters, time_step.step_limit(constants, parameters.finalFilling)),
@@ -215,7 +205,15 @@ def _cluster(parameters, constants):
 
     radius, overlap = parameters.grainRadius, constants["equilibriumOverlap"]
     cluster = packings.bcca(parameters.grains, radius, overlap, parameters.seed)
-    edge = _first_edge(parameters, cluster)
+    edge = smallest = smallest_edge(cluster)
+    if parameters.initialFilling is not None:
+        volume = parameters.grains * 4 / 3 * pi * parameters.grainRadius**3
+        edge = (volume / parameters.initialFilling) ** (1 / 3)
+        try:
+            require_apart_from_images(cluster, edge)
+        except packings.PackingError as problem:
+            given, most = parameters.initialFilling, volume / smallest**3
+            raise ParameterError(f"initialFilling = {given:g}: {problem}, as with {most:.4g} for this seed") from None
     mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
     rate = shrinking_rate(parameters, constants["timeUnit"])
     material = yade_scene.material_of(parameters)
@@ -232,22 +230,6 @@ def _cluster(parameters, constants):
     return cluster, np.full(3, edge), build, lambda state: series(state, mass)
 
 
-def _first_edge(parameters, cluster):
-    smallest = smallest_edge(cluster)
-    if parameters.initialFilling is None:
-        return smallest
-    volume = parameters.grains * 4 / 3 * pi * parameters.grainRadius**3
-    edge = (volume / parameters.initialFilling) ** (1 / 3)
-    try:
-        require_apart_from_images(cluster, edge)
-    except packings.PackingError as problem:
-        raise ParameterError(
-            f"initialFilling = {parameters.initialFilling:g}: {problem}, as with {volume / smallest**3:.4g} for seed "
-            f"{parameters.seed}"
-        ) from None
-    return edge
-
-
 def _layer(parameters, constants):
     """As _cluster(), of a layer between walls: edges of the space between them."""
     from yade.wrapper import Omega
@@ -256,7 +238,7 @@ def _layer(parameters, constants):
 
     radius = parameters.grainRadius
     on_plate = yade_scene.plane_constants(parameters, linearDamping=parameters.linearDamping)["equilibriumOverlap"]
-    edge = square_for(parameters.grains, DEPOSITED) * radius
+    edge = ceil(100 * (parameters.grains * 4 / 3 * pi / DEPOSITED) ** (1 / 3)) / 100 * radius  # as high as wide
     layer = rbd(parameters.grains, radius, constants["equilibriumOverlap"], on_plate, edge, parameters.seed)
     height = layer.position[:, UP].max() + (1 + GAP) * radius
     rate = shrinking_rate(parameters, constants["timeUnit"])

@@ -1,9 +1,9 @@
 """Packings of spheres, made without YADE: numpy and scipy, and numba for BPCA. Lengths in m."""
 
-from yade_scripts.packings.ballistic import bcca, bpca  # noqa: F401
-from yade_scripts.packings.files import is_packing, load, save  # noqa: F401
-from yade_scripts.packings.lattice import cpe, grain_number, maximum_filling  # noqa: F401
-from yade_scripts.packings.packing import (  # noqa: F401
+# ruff: noqa: F401
+from yade_scripts.packings.ballistic import bcca, bpca
+from yade_scripts.packings.lattice import cpe, grain_number, maximum_filling
+from yade_scripts.packings.packing import (
     Packing,
     PackingError,
     centred,
@@ -11,8 +11,11 @@ from yade_scripts.packings.packing import (  # noqa: F401
     contacts,
     extent,
     gyration_radius,
+    is_packing,
     largest_piece,
+    load,
     moved,
     random_stream,
     require_connected,
+    save,
 )

@@ -6,9 +6,8 @@ import numpy as np
 
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.ballistic import bcca, bpca
-from yade_scripts.packings.files import OF_CONTACTS, packing_from_file
 from yade_scripts.packings.lattice import cpe, grain_number
-from yade_scripts.packings.packing import largest_piece, random_stream
+from yade_scripts.packings.packing import OF_CONTACTS, largest_piece, packing_from_file, random_stream
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000
@@ -96,13 +95,11 @@ class AggregateParameters(GrainParameters):
                 raise ParameterError("radius and grains: both given; must be one of the two, beside filling")
             return self.changed(filling=filling, radius=(self.grains / filling) ** (1 / dimensions))
         radius = 20.0 if self.radius is None else self.radius
-        at_least, at_most = ((n / filling) ** (1 / dimensions) for n in (2, MOST_GRAINS))
-        grains = grain_number(filling, min(radius, 2 * at_most), bool(self.planar))
+        least, most = ((n / filling) ** (1 / dimensions) for n in (2, MOST_GRAINS))
+        grains = grain_number(filling, min(radius, 2 * most), bool(self.planar))
         if not 2 <= grains <= MOST_GRAINS:
-            raise ParameterError(
-                f"radius = {radius:g}: too small or large at filling {filling:g}; must be about {at_least:.3g} to "
-                f"{at_most:.3g} [grain radii], for 2 to {MOST_GRAINS} grains"
-            )
+            must = f"must be about {least:.3g} to {most:.3g} [grain radii], for 2 to {MOST_GRAINS} grains"
+            raise ParameterError(f"radius = {radius:g}: too small or large at filling {filling:g}; {must}")
         return self.changed(filling=filling, radius=radius, grains=grains)
 
 
@@ -113,11 +110,8 @@ def require_growable(packing, name, grains):
 
 
 def make(parameters, overlap, index):
-    """Aggregate number index of a run, around the origin; overlap: of touching grains of grainRadius [m].
-
-    Its parameters name the material, so that a run of other grains does not start with contacts out of rest. Raises
-    PackingError.
-    """
+    """Aggregate number index of a run, around the origin; overlap: of touching grains of grainRadius [m]. Its
+    parameters name the material, so that no run of others starts with contacts out of rest. Raises PackingError."""
     p, planar = parameters, bool(parameters.planar)
     if p.packing == "file":
         return packing_from_file(p.file, p.grainRadius, overlap, planar, p)
@@ -135,8 +129,7 @@ def make(parameters, overlap, index):
 
 
 def radii(parameters, index):
-    """Radii (grains,) [m] of a grown aggregate in random order, from a stream of their own: with equal grains the
-    packing stays the same."""
+    """Radii (grains,) [m] of a grown aggregate in random order, from a stream of their own."""
     p, stream = parameters, random_stream(parameters.seed, index, 1)
     if p.sizes == LOGNORMAL:
         deviations = stream.normal(size=p.grains)
@@ -148,8 +141,7 @@ def radii(parameters, index):
         return found
     others = round(p.sizeFraction * p.grains)
     if 0 < p.sizeFraction < 1 and others in (0, p.grains):
-        raise ParameterError(
-            f"sizeFraction = {p.sizeFraction:g}: of {p.grains} grains none, or all; must be 0, 1, or such that some are"
-        )
+        must = "must be 0, 1, or such that some are"
+        raise ParameterError(f"sizeFraction = {p.sizeFraction:g}: of {p.grains} grains none, or all; {must}")
     found[:others] *= p.sizeRatio
     return stream.permutation(found)

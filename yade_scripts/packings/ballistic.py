@@ -1,6 +1,6 @@
 """Aggregates that grow by ballistic hits, at the equilibrium overlap: BPCA, BCCA and RBD. The hits are exact."""
 
-from math import ceil, sqrt
+from math import sqrt
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,7 +12,7 @@ FIRST_GRID, GROWTH = 16, 1.5  # half width of the first grid in cells, and the r
 
 
 def bpca(grains, grain_radius, overlap, seed, index=0, radii=None):
-    """An aggregate by ballistic particle-cluster aggregation (A22 section 2.4, Mukai et al. 1992).
+    """An aggregate by ballistic particle-cluster aggregation (A22 section 2.4, Mukai et al. 1992), as a Packing.
 
     Grains come one by one on straight lines, from directions that are uniform on the sphere and with impact parameters
     uniform over the cross-section of the sphere that holds the cluster, and stay where they first touch it. Grains that
@@ -26,13 +26,7 @@ def bpca(grains, grain_radius, overlap, seed, index=0, radii=None):
     seed, index : int
         Of the random numbers, and of the aggregate.
     radii : (grains,) array, optional
-        [m], in the order in which the grains come; all grain_radius if left out.
-
-    Returns
-    -------
-    Packing
-        With its centre of mass at the origin.
-    """
+        [m], in the order in which the grains come; all grain_radius if left out."""
     radii = np.full(grains, float(grain_radius)) if radii is None else np.asarray(radii, dtype=float)
     position = _hit_by_grains(radii / grain_radius, overlap / grain_radius, random_stream(seed, index)) * grain_radius
     about = dict(packing="bpca", grains=grains, grainRadius=grain_radius, overlap=overlap, index=index)
@@ -72,24 +66,11 @@ def _hit_by_grains(radii, overlap, stream):
 
 
 def bcca(grains, grain_radius, overlap, seed, index=0, planar=False, radii=None):
-    """An aggregate by ballistic cluster-cluster aggregation, in space or in a plane (Sirono & Ueno 2017, section 4).
+    """An aggregate by ballistic cluster-cluster aggregation (S17 section 4), as a Packing; parameters as of bpca().
 
     Two clusters of equal size (or of numbers of grains that differ by one) and random orientation fly at each other on
     a straight line, without turning, and stop where their first grains touch; from single grains to the aggregate. The
-    paper doesn't give the impact parameter: here it is uniform over the cross-section in which clusters can meet.
-
-    Parameters
-    ----------
-    grains, grain_radius, overlap, seed, index, radii
-        As in bpca().
-    planar : bool
-        Whether all grains lie in the plane z = 0.
-
-    Returns
-    -------
-    Packing
-        With its centre of mass at the origin.
-    """
+    paper doesn't give the impact parameter: here it is uniform over the cross-section in which clusters can meet."""
     stream = random_stream(seed, index)
     radii = np.full(grains, float(grain_radius)) if radii is None else np.asarray(radii, dtype=float)
     touching = lambda first, second: touching_distance(first, second, grain_radius, overlap)
@@ -129,12 +110,10 @@ def _met(target, projectile, target_radii, projectile_radii, touching, stream, p
 
 
 def rbd(grains, grain_radius, overlap, overlap_with_plate, edge, seed):
-    """A layer by random ballistic deposition on the plate z = 0, a dust cake of laboratories (Blum & Schraepler 2004).
+    """A layer by random ballistic deposition on the plate z = 0 (Blum & Schraepler 2004).
 
-    Grains come one by one straight down at random places of a square around the z axis that is periodic in x and y, and
-    stay where they first touch another grain or the plate. Grains across an edge are there once. overlap: of two at
-    rest; overlap_with_plate: of one with the plate; edge: of the square [m].
-    """
+    Grains come straight down at random places of a square around the z axis that is periodic in x and y, and stay where
+    they first touch. overlap, overlap_with_plate: of one at rest on another, on the plate; edge: of the square [m]."""
     places = edge * (random_stream(seed, 0).random((grains, 2)) - 0.5)
     touching = 2 * grain_radius - overlap
     cells = max(3, int(edge / touching))
@@ -156,8 +135,3 @@ def rbd(grains, grain_radius, overlap, overlap_with_plate, edge, seed):
         height[number] = z
     about = dict(packing="rbd", grains=grains, grainRadius=grain_radius, overlap=overlap, edge=edge)
     return Packing(np.column_stack([places, height]), np.full(grains, float(grain_radius)), seed, about)
-
-
-def square_for(grains, filling):
-    """Edge [grain radii] of the square on which so many grains make a layer of that filling as high as wide."""
-    return ceil(100 * (grains * 4 / 3 * np.pi / filling) ** (1 / 3)) / 100

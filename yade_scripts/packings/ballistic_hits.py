@@ -39,8 +39,7 @@ def _across(direction):
 
 @njit(cache=True)
 def _through_box(start, direction, low, high):
-    """(t of entry, t of exit) of the ray start + t direction, t >= 0, and a cube from low to high; entry > exit:
-    misses."""
+    """(t of entry, t of exit) of the ray start + t direction, t >= 0, and a cube; entry > exit: misses."""
     enter, leave = 0.0, np.inf
     for axis in range(3):
         if direction[axis] == 0.0:
@@ -110,14 +109,11 @@ def _first_hit(start, direction, radius, position, radii, overlap, head, followi
 
 @njit(cache=True)
 def grow(position, radii, count, overlap, directions, offsets, extent, largest, head, following, low, width):
-    """Add grains where rays first touch the cluster, until all are there, the rays are used up or the grid is too
-    small.
+    """Add grains where rays first touch the cluster, until all are there, the rays used up or the grid too small.
 
     position (N,3), radii (N,): the first `count` are there; overlap: of equal grains at rest; directions (B,3) unit
-    vectors and offsets (B,2) in the unit circle of the rays, which start outside a sphere around the first grain that
-    holds the cluster and the grain to come; extent: largest distance of a grain's centre from the first one's;
-    largest: radius. Returns (count, rays used, extent).
-    """
+    vectors and offsets (B,2) in the unit circle of the rays, which start outside a sphere that holds the cluster and
+    the grain to come; extent: largest distance from the first grain. Returns (count, rays used, extent)."""
     start = np.empty(3)
     for ray in range(len(directions)):
         reach = extent + 2.0 * largest

@@ -1,9 +1,7 @@
 """Packings out of runs: a sphere cut out of a compression (Oshiro et al. 2025), the largest piece of a collision (S17).
 
-Grains of a run's state are under pressure, or still vibrate: contacts are brought to rest by the smallest motion of the
-grains that gives every contact its equilibrium overlap. A run starts from contacts that have neither slid, rolled nor
-twisted.
-"""
+Grains of a run's state are under pressure, or still vibrate: their contacts are brought to rest, and have
+neither slid, rolled nor twisted."""
 
 import os
 from dataclasses import dataclass, field, replace
@@ -13,17 +11,9 @@ import numpy as np
 from analysis.runs.files import RunFolderError, array_names, read_bytes
 from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
-from yade_scripts.packings.files import OF_CONTACTS
-from yade_scripts.packings.packing import (
-    Packing,
-    PackingError,
-    centred,
-    largest_cluster,
-    random_stream,
-    randomly_turned,
-)
-from yade_scripts.packings.rest import at_rest
-from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, parameter
+from yade_scripts.packings import Packing, PackingError, centred, random_stream
+from yade_scripts.packings.packing import OF_CONTACTS, at_rest, largest_cluster, randomly_turned
+from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, one_line, parameter
 
 DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
 NO_RUN = (OSError, ValueError, KeyError, TypeError, RunFolderError)  # what reading one may raise
@@ -77,20 +67,16 @@ def read_periodic_state(path):
         if state.cell_size is None:
             raise ValueError("not of a periodic cell")
     except NO_RUN as error:
-        reason = " ".join(str(error).split())
-        raise PackingError(
-            f"from = {path}: {reason}; must be a state of a compression, RUN/states/NNNNNN.npz"
-        ) from None
+        must = "must be a state of a compression, RUN/states/NNNNNN.npz"
+        raise PackingError(f"from = {path}: {one_line(error)}; {must}") from None
     walls = () if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
     return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material, *walls)
 
 
 def cut(state, parameters, index=0):
-    """A sphere cut out of a PeriodicState, around the origin; index: of the aggregate, places and orientations differ.
-
-    Its centre is random in the cell; grains whose centre lies outside are dropped, and those that are then no longer
-    connected with the most; a random orientation. Raises ParameterError and PackingError.
-    """
+    """A sphere cut out of a PeriodicState, around the origin; index: of the aggregate. Its place in the cell and
+    orientation are random; grains outside are dropped, and those that are then no longer connected with the most.
+    Raises ParameterError and PackingError."""
     grain_radius = float(state.radius.max())
     if parameters.radius is None:
         raise ParameterError("radius: not given; must be that of the sphere to cut [grain radii]")
@@ -100,10 +86,8 @@ def cut(state, parameters, index=0):
         room[state.axis], where = np.ptp(state.walls), "space between the walls"
     largest = float(room.min()) / 2 / grain_radius
     if parameters.radius > largest:
-        raise ParameterError(
-            f"radius = {parameters.radius:g}: a larger sphere than the {where} holds; must be at most {largest:.4g} "
-            "[grain radii]"
-        )
+        must = f"must be at most {largest:.4g} [grain radii]"
+        raise ParameterError(f"radius = {parameters.radius:g}: a larger sphere than the {where} holds; {must}")
     stream = random_stream(parameters.seed, index)
     place = stream.uniform(0, 1, 3)
     centre = place * state.cell_size
@@ -112,7 +96,12 @@ def cut(state, parameters, index=0):
     position = state.position - centre
     position = position - state.cell_size * np.round(position / state.cell_size)
     inside = np.flatnonzero(np.linalg.norm(position, axis=1) <= reach)
-    kept, pairs = largest_cluster(len(inside), _pairs_within(position, state.contact_pairs, inside))
+    row = np.full(len(position), -1)
+    row[inside] = np.arange(len(inside))
+    pairs = state.contact_pairs
+    apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
+    near = apart < 3 * np.median(apart) if len(apart) else np.zeros(0, bool)  # not across the cell
+    kept, pairs = largest_cluster(len(inside), row[pairs][(row[pairs] >= 0).all(axis=1) & near])
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
     about = dict(packing="compressed", aggregateRadius=reach, filling=len(kept) / parameters.radius**3)
@@ -124,32 +113,19 @@ def cut(state, parameters, index=0):
 
 
 def _at_rest(packing, pairs, grain_radius, overlap):
-    """The packing with its contacts at rest, and among its parameters what that took. Raises PackingError where one
-    stays deeper than DEEPEST or comes apart."""
+    """The packing with its contacts at rest; PackingError where one stays deeper than DEEPEST or comes apart."""
     position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap)
     if deviation.min() <= -1.0 or deviation.max() >= DEEPEST - 1:
         worst = deviation[np.abs(deviation).argmax()]
-        raise PackingError(
-            f"the contacts cannot be brought to rest together: one overlaps by {1 + worst:.3g} of the equilibrium; "
-            f"must be at most {DEEPEST:g}: a looser state"
-        )
+        must = f"must be at most {DEEPEST:g}: a looser state"
+        raise PackingError(f"contacts cannot come to rest together: one overlaps by {1 + worst:.3g}; {must}")
     motion = float(np.linalg.norm(position - packing.position, axis=1).max())
     about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
     return replace(packing, position=position, parameters=about)
 
 
-def _pairs_within(position, pairs, inside):
-    """Rows (M, 2) among `inside` of the contacts between those grains that do not reach across the cell."""
-    row = np.full(len(position), -1)
-    row[inside] = np.arange(len(inside))
-    apart = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
-    near = apart < 3 * np.median(apart) if len(apart) else np.zeros(0, bool)
-    return row[pairs][(row[pairs] >= 0).all(axis=1) & near]
-
-
 def largest_piece_of_run(path):
-    """The largest piece in the last state of a collision's run folder, at rest, around the origin; raises
-    PackingError."""
+    """The largest piece in the last state of a collision's run folder, at rest. Raises PackingError."""
     try:
         run = open_run(path)
         state = run.last
@@ -157,8 +133,8 @@ def largest_piece_of_run(path):
         if state.cell_size is not None or state.contact_bonded.any():
             raise ValueError("periodic, or with sintered bonds")
     except NO_RUN as error:
-        reason = " ".join(str(error).split())
-        raise PackingError(f"after = {path}: {reason}; must be a run folder of a collision without bonds") from None
+        must = "must be a run folder of a collision without bonds"
+        raise PackingError(f"after = {path}: {one_line(error)}; {must}") from None
     kept, pairs = largest_cluster(len(state.radius), state.contact_pairs)
     about = {"packing": "collided", "of": len(state.radius)}
     packing = Packing(state.position[kept], state.radius[kept], int(run.parameters.get("seed", 0)), about)
@@ -167,8 +143,7 @@ def largest_piece_of_run(path):
 
 
 def turned(packing, seed, index=0):
-    """The packing in a random orientation, of a seed and the number of the aggregate; one in the plane z = 0 stays in
-    it."""
+    """The packing in a random orientation; one in the plane z = 0 stays in it."""
     planar = not np.any(packing.position[:, 2])
     position = randomly_turned(packing.position, random_stream(seed, index), planar)
     return Packing(position, packing.radius, seed, {**packing.parameters, "index": index})

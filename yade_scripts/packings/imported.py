@@ -2,7 +2,7 @@
 
 Programs write grains that touch 2 r apart, or at the overlap of their own contact law, with the digits that they happen
 to write; in a run a gap of 1e-16 m is no contact, and a contact out of rest pulls. Grains are taken to touch where the
-gap between them is within what the digits hide; then rest.py moves all of them as little as it takes."""
+gap between them is within what the digits hide; then all are moved as little as it takes."""
 
 from dataclasses import dataclass
 
@@ -11,28 +11,18 @@ import numpy as np
 from analysis.measures.fragments import fragment_labels, fragment_sizes
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
+from yade_scripts.packings import Packing, PackingError, centred, contacts, is_packing, largest_piece, load
 from yade_scripts.packings.aggregate import MOST_GRAINS
-from yade_scripts.packings.files import DEEPEST, OF_CONTACTS, is_packing, load
 from yade_scripts.packings.from_run import NO_RUN, holds, record_of_state
-from yade_scripts.packings.packing import (
-    Packing,
-    PackingError,
-    centred,
-    contacts,
-    equilibrium_overlaps,
-    largest_piece,
-    surface_gaps,
-    touching,
-)
-from yade_scripts.packings.rest import at_rest
+from yade_scripts.packings.packing import DEEPEST, OF_CONTACTS, at_rest, equilibrium_overlaps, surface_gaps, touching
 from yade_scripts.packings.spheres import IN_A_METRE, read_spheres
-from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_of, parameter
+from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_line, one_of, parameter
 
 OF_RADIUS = "radius"
-PLAUSIBLE = (1e-9, 1e-3)  # m: radii of grains
+SMALLEST, LARGEST = 1e-9, 1e-3  # m: radii of grains
 SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
 DEEPEST_OVERLAP = 0.1  # grain radii beyond that at rest, as under pressure; deeper ones have another radius or unit
-LARGEST = "largest"
+LARGEST_PIECE = "largest"
 
 
 @dataclass(frozen=True)
@@ -46,9 +36,7 @@ class ImportParameters(GrainParameters):
     )
     radius: float | None = parameter(None, POSITIVE, "of the grains, where the file has no radii", "unit")
     names: str | None = parameter(
-        None,
-        Check("names of its columns, such as x,y,z,-,radius", lambda text: text != ""),
-        "of the columns of a table, in the place of its own; - for those without use",
+        None, Check("such as x,y,z,-,radius", lambda text: text != ""), "of a table's columns; - for those without use"
     )
     tolerance: float | None = parameter(
         None,
@@ -57,19 +45,14 @@ class ImportParameters(GrainParameters):
         "radii of the smallest grain",
     )
     pieces: int = parameter(
-        1,
-        Check(f"a whole number > 0, or {LARGEST}", lambda x: x > 0),
-        "that the aggregate is meant to be in",
-        word=LARGEST,
+        1, Check(f"a whole number > 0, or {LARGEST_PIECE}", lambda x: x > 0), "of the aggregate", word=LARGEST_PIECE
     )
 
 
 def imported(path, texts):
-    """(Packing, lines about it) of another program's aggregate, around the origin, its contacts at rest.
-
-    texts: {name: text} of ImportParameters. Grains are of the file's material, unless one is given. The lines tell what
-    was read, and how far grains were moved. Raises ParameterError and PackingError.
-    """
+    """(Packing, lines about what was read and how far grains were moved) of another program's aggregate, around the
+    origin, its contacts at rest. texts: {name: text} of ImportParameters. Grains are of the file's material, unless one
+    is given. Raises ParameterError and PackingError."""
     parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
     position, radius, tolerance = _in_metres(path, spheres, parameters, "grainRadius" in texts)
@@ -83,14 +66,12 @@ def imported(path, texts):
     if np.abs(deviation).max(initial=0.0) > DEEPEST - 1:
         worst = np.abs(deviation).argmax()
         first, second = at_end[worst]
-        raise PackingError(
-            f"{path}: the contacts cannot be brought to rest together: grains {first} and {second} keep "
-            f"{1 + deviation[worst]:.3g} of the overlap at rest; must be {2 - DEEPEST:g} to {DEEPEST:g}"
-        )
+        what = f"grains {first} and {second} keep {1 + deviation[worst]:.3g} of the overlap at rest"
+        must = f"must be {2 - DEEPEST:g} to {DEEPEST:g}"
+        raise PackingError(f"{path}: the contacts cannot be brought to rest together: {what}; {must}")
     moved = float(np.linalg.norm(rested - position, axis=1).max())
-    about = dict(
-        packing="imported", grainRadius=grain_radius, overlap=overlap, tolerance=tolerance, largestMotion=moved
-    )
+    about = {"packing": "imported", "grainRadius": grain_radius, "overlap": overlap}
+    about |= {"tolerance": tolerance, "largestMotion": moved}
     about |= {name: getattr(parameters, name) for name in OF_CONTACTS}
     packing = Packing(centred(rested, radius), radius, 0, about)
     lines = [
@@ -100,12 +81,21 @@ def imported(path, texts):
         f"{np.abs(deviation).max(initial=0.0):.1g} of their overlap at rest, "
         f"{len(at_end) - len(pairs)} more came about",
     ]
-    return _in_pieces(path, packing, parameters.pieces), lines
+    wanted = parameters.pieces
+    if wanted == LARGEST_PIECE:
+        return largest_piece(packing), lines
+    sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
+    if len(sizes) != wanted:
+        shown = ", ".join(map(str, sizes[:4])) + (", ..." if len(sizes) > 4 else "")
+        raise PackingError(
+            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains; must be {wanted}: pieces="
+            f"{len(sizes)} or {LARGEST_PIECE} if that is meant, or another tolerance, radius or unit"
+        )
+    return packing, lines
 
 
 def grains_of(packing, material=None):
-    """Arguments of a run whose grains are those of an imported packing: `material`, or the one that is most like them,
-    and what differs from it."""
+    """Arguments of a run with the grains of an imported packing: the material most like them, and what differs."""
     made_of = {name: packing.parameters[name] for name in ("grainRadius", *OF_CONTACTS)}
 
     def others(usual):
@@ -128,10 +118,8 @@ def _material_of(path):
         try:
             made_of = record_of_state(path)["derived"]
         except NO_RUN as error:
-            reason = " ".join(str(error).split())
-            raise PackingError(
-                f"{path}: a state of a run, but {reason}; must be in RUN/states, or material be given"
-            ) from None
+            must = "must be in RUN/states, or material be given"
+            raise PackingError(f"{path}: a state of a run, but {one_line(error)}; {must}") from None
     return {name: made_of[name] for name in OF_CONTACTS if name in made_of}
 
 
@@ -151,24 +139,19 @@ def _in_metres(path, spheres, parameters, grain_radius_given):
         radius = np.full(len(spheres.position), parameters.radius or 1.0)
     in_unit = 1 / parameters.grainRadius if unit == OF_RADIUS else IN_A_METRE[unit]
     if unit != OF_RADIUS:
-        _require_plausible(path, float(np.median(radius)), unit)
+        typical = float(np.median(radius))
+        fits = [f"unit={other}" for other, number in IN_A_METRE.items() if SMALLEST <= typical / number <= LARGEST]
+        if f"unit={unit}" not in fits:
+            raise PackingError(
+                f"{path}: grains of {typical:g} {unit}; must be of {SMALLEST:g} to {LARGEST:g} m, as with "
+                f"{' or '.join(fits) or 'no unit of length'}"
+            )
     hidden = (np.sqrt(3.0) + 1.0) * spheres.resolution
     smallest = radius.min()
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
     position, radius = (np.asarray(lengths / in_unit, dtype=float) for lengths in (spheres.position, radius))
     return position, radius, float(gap / in_unit)
-
-
-def _require_plausible(path, radius, unit):
-    """Raise PackingError for grains of a size [unit] that dust does not have."""
-    smallest, largest = PLAUSIBLE
-    fits = [f"unit={other}" for other, number in IN_A_METRE.items() if smallest <= radius / number <= largest]
-    if f"unit={unit}" not in fits:
-        raise PackingError(
-            f"{path}: grains of {radius:g} {unit}; must be of {smallest:g} to {largest:g} m, as with "
-            f"{' or '.join(fits) or 'no unit of length'}"
-        )
 
 
 def _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap):
@@ -182,25 +165,9 @@ def _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap):
     if (beyond > allowed).any():
         worst = np.argmax(beyond / smaller)
         first, second = pairs[worst]
-        raise PackingError(
-            f"{path}: grains {first} and {second} overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller "
-            f"one more than at rest; must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or "
-            "a larger tolerance"
-        )
+        what = f"overlap by {beyond[worst] / smaller[worst]:.3g} radii of the smaller one more than at rest"
+        must = f"must be at most {allowed[worst] / smaller[worst]:.2g}: another radius or unit, or a larger tolerance"
+        raise PackingError(f"{path}: grains {first} and {second} {what}; {must}")
     # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
     at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
     return pairs[gaps <= np.maximum(0.0, tolerance - at_rest_there * depth)]
-
-
-def _in_pieces(path, packing, wanted):
-    """The packing, when it is in as many pieces as wanted, or the largest of them."""
-    if wanted == LARGEST:
-        return largest_piece(packing)
-    sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
-    if len(sizes) != wanted:
-        shown = ", ".join(map(str, sizes[:4])) + (", ..." if len(sizes) > 4 else "")
-        raise PackingError(
-            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains; must be {wanted}: pieces="
-            f"{len(sizes)} or {LARGEST} if that is meant, or another tolerance, radius or unit"
-        )
-    return packing

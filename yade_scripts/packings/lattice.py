@@ -17,10 +17,7 @@ FCC_BASIS = np.array([[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]])  
 
 
 def maximum_filling(grain_radius, overlap, planar=False):
-    """Filling factor of the whole lattice, pi/(3 sqrt 2) [2r/(2r-overlap)]^3 (A24 eq 40); lengths in m.
-
-    planar: fraction of the area, pi/(2 sqrt 3) [2r/(2r-overlap)]^2.
-    """
+    """Filling factor of the whole lattice (A24 eq 40), or fraction of the area of a planar one; lengths in m."""
     if planar:
         return pi / (2 * sqrt(3)) * (2 * grain_radius / (2 * grain_radius - overlap)) ** 2
     return fcc_filling(grain_radius, overlap)
@@ -32,7 +29,7 @@ def grain_number(filling, relative_radius, planar=False):
 
 
 def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=False):
-    """A close-packed and extracted aggregate around the origin (A24 section 3), a function of the arguments.
+    """A close-packed and extracted aggregate around the origin (A24 section 3); raises PackingError.
 
     Parameters
     ----------
@@ -43,32 +40,18 @@ def cpe(filling, aggregate_radius, grain_radius, overlap, seed, index=0, planar=
     seed, index : int
         Of the random numbers, and of the aggregate.
     planar : bool
-        Whether all grains lie in the plane z = 0.
-
-    Returns
-    -------
-    Packing
-
-    Raises
-    ------
-    PackingError
-        When the lattice doesn't hold that many grains.
-    """
+        Whether all grains lie in the plane z = 0."""
     limit = maximum_filling(grain_radius, overlap, planar)
     if filling > limit:
-        raise PackingError(
-            f"filling = {filling:g}: more than the lattice holds; must be at most {limit:.4f} (A24 eq 40)"
-        )
+        raise PackingError(f"filling = {filling:g}: more than the lattice holds; must be at most {limit:.4f}")
     wanted = grain_number(filling, aggregate_radius / grain_radius, planar)
     stream = random_stream(seed, index)
     lattice = _lattice_in_circle if planar else _lattice_in_sphere
     sites = lattice(2 * grain_radius - overlap, aggregate_radius, stream)
     if wanted > len(sites):
         at_most = len(sites) * (grain_radius / aggregate_radius) ** (2 if planar else 3)
-        raise PackingError(
-            f"filling = {filling:g}: takes {wanted} grains, but the lattice has {len(sites)} in this sphere (seed "
-            f"{seed}, aggregate {index}); must be at most {at_most:.4f} here, {limit:.4f} in large spheres (A24 eq 40)"
-        )
+        has = f"takes {wanted} grains, but the lattice has {len(sites)} in this sphere (seed {seed}, aggregate {index})"
+        raise PackingError(f"filling = {filling:g}: {has}; must be at most {at_most:.4f} here (A24 eq 40)")
     kept = np.sort(stream.choice(len(sites), wanted, replace=False, shuffle=False))
     position = randomly_turned(sites[kept], stream, planar)
     about = dict(packing="cpe", filling=filling, aggregateRadius=aggregate_radius, grainRadius=grain_radius)

@@ -1,19 +1,39 @@
-"""Packings of spheres: their contacts, sizes and pieces. Lengths in m; files.py saves and loads them."""
+"""Packings of spheres: their contacts, sizes and pieces, how contacts come to rest, and files. Lengths in m."""
 
+import hashlib
+import json
+import os
+import zipfile
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from math import sqrt
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.linalg import lsqr
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from analysis.measures.fragments import belongs_to_an_aggregate, fragment_labels
 from analysis.measures.structure import fractal_dimension, grains_within, mean_coordination
-from yade_scripts.parameters.errors import InputError
+from analysis.progress import progress
+from analysis.runs.files import RunFolderError, npz, read_arrays, write_file
+from analysis.runs.folder import read_quantities
+from analysis.runs.format import FORMAT, STATE
+from yade_scripts.parameters import InputError, one_line
 
 NEAREST = 3.0  # grain radii: nearer than that numbers of grains depend on contacts
 ORIGINS = 2000  # grains from which the fractal dimension is taken
 AT_REST = 1e-3  # of the equilibrium overlap: contacts closer to it are at rest
+MOST_MOVES = 20
+# Of LSQR a step: more of them follow soft modes of dense packings, which are of no use before distances are nearly
+# right (10,800 close-packed grains: 1 % left after 6 steps of 300, 4 % after 6 of 2000).
+ITERATIONS = 300
+
+SUM = "sha256"  # of a packing, among its parameters
+SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
+OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
+DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
 
 
 class PackingError(InputError, ValueError):
@@ -73,8 +93,7 @@ def characteristic_radius(packing):
 
 
 def surface_gaps(position, radius, pairs):
-    """Distances (M,) of the surfaces of pairs (M, 2), negative where they overlap, in the unit of position and
-    radius."""
+    """Distances (M,) of the surfaces of pairs (M, 2), negative where they overlap; lengths in any unit."""
     distance = np.linalg.norm(position[pairs[:, 0]] - position[pairs[:, 1]], axis=1)
     return distance - radius[pairs].sum(axis=1)
 
@@ -94,9 +113,7 @@ def contacts(packing):
 def touching_distance(first, second, grain_radius, overlap):
     """Distance [m] of the centres of grains of radii first, second [m] (any shape) at rest against each other.
 
-    overlap: of two grains of grain_radius at rest [m]. It goes with the reduced radius R as R^(1/3), since
-    delta_0 = a_0^2/(3 R) and a_0^3 ~ R^2 (A22 eq 1 and after eq 2).
-    """
+    overlap: of two of grain_radius; goes as R*^(1/3), since delta_0 = a_0^2/(3 R*), a_0^3 ~ R*^2 (A22)."""
     return first + second - overlap * np.cbrt(2 * first * second / ((first + second) * grain_radius))
 
 
@@ -147,3 +164,129 @@ def description(packing):
         dimension = fractal_dimension(distance, grains_within(packing.position, distance, origins=ORIGINS))
         words.append(f"fractal dimension {dimension[0]:.2f}")
     return ", ".join(words)
+
+
+# ---- contacts at rest ----
+
+
+def at_rest(position, radius, pairs, grain_radius, overlap):
+    """Bring the contacts of pairs (M, 2) to rest; grains that come to overlap on the way are contacts too.
+
+    Newton's method on the distances of the grains that touch, each step the smallest motion that solves the linearised
+    equations. Where there are more contacts than the grains can obey, the steps lead to the least elastic energy.
+
+    overlap: at rest of two of grain_radius. Returns positions (N, 3), pairs (M, 2) of contacts, and how much deeper
+    each (M,) is than at rest, in equilibrium overlaps."""
+    moved = position.copy()
+    for move in progress(range(MOST_MOVES + 1), "bringing contacts to rest", MOST_MOVES + 1):
+        pairs = np.unique(np.sort(np.concatenate([pairs, touching(moved, radius)]), axis=1), axis=0)
+        depth = equilibrium_overlaps(radius, pairs, grain_radius, overlap)
+        missing = -surface_gaps(moved, radius, pairs) - depth
+        deviation = missing / depth
+        if move == MOST_MOVES or np.abs(deviation).max(initial=0.0) < AT_REST:
+            return moved, pairs, deviation
+        separation = moved[pairs[:, 0]] - moved[pairs[:, 1]]
+        normal = separation / np.linalg.norm(separation, axis=1)[:, None]
+        # k ~ a_0 ~ R^(2/3), as depth^2 (packing.touching_distance)
+        moved = moved + _smallest_motion(normal, pairs, missing, depth / overlap, len(radius))
+
+
+def _smallest_motion(normal, pairs, change, weight, grains):
+    """Least motion (N, 3) that changes distances of pairs (M, 2) by change (M,), or with the least weighted squares."""
+    rows = np.repeat(np.arange(len(pairs)), 3)
+    columns = [(3 * pairs[:, side, None] + np.arange(3)).ravel() for side in (0, 1)]
+    of_first = (weight[:, None] * normal).ravel()
+    entries = np.concatenate([of_first, -of_first]), (np.tile(rows, 2), np.concatenate(columns))
+    matrix = csr_matrix(entries, shape=(len(pairs), 3 * grains))
+    return lsqr(matrix, weight * change, atol=1e-9, btol=1e-9, iter_lim=ITERATIONS)[0].reshape(-1, 3)
+
+
+# ---- in files ----
+
+
+def save(path, packing):
+    """Write a packing as .npz: position (N, 3), radius (N,) in m, seed, parameters (a JSON text); beside them, for
+    whoever reads the file, gyration_radius and characteristic_radius [m]."""
+    about = {"seed": packing.seed, "parameters": json.dumps(packing.parameters)}
+    sizes = {"gyration_radius": gyration_radius(packing), "characteristic_radius": characteristic_radius(packing)}
+    write_file(path, npz(position=packing.position, radius=packing.radius, **about, **sizes))
+
+
+def is_packing(path):
+    """Whether a file is one that save() wrote, be its grains right or not."""
+    try:
+        return zipfile.is_zipfile(path) and bool(read_arrays(path, ("seed",), texts=("parameters",)))
+    except (RunFolderError, OSError):
+        return False
+
+
+def load(path):
+    """Read a packing that save() wrote; raises PackingError when it is none."""
+    try:
+        spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
+        return Packing(**spheres, seed=int(about["seed"]), parameters=dict(json.loads(about["parameters"])))
+    except (RunFolderError, ValueError, TypeError) as error:
+        reason = one_line(error).removeprefix(f"{path}: ")
+        must = "must be an .npz with position, radius, seed, parameters, as make_packing.py writes it"
+        raise PackingError(f"{path}: not a packing ({reason}); {must}") from None
+
+
+def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
+    """The packing in a file, with its centre of mass at the origin and the sum of its grains among its parameters.
+
+    grain_radius, overlap, grains (with the attributes OF_CONTACTS): of the run; planar: whether all must lie in the
+    plane z = 0. Raises PackingError for other grains."""
+    packing = load(path)
+    if packing.grains < 2:
+        raise PackingError(f"{path}: holds {packing.grains} grains; must be N >= 2")
+    _require_material(path, packing, grain_radius, overlap, grains)
+    _require_shallow(path, packing, grain_radius, overlap)
+    if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
+        raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
+    found = moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+    return replace(found, parameters={**packing.parameters, SUM: _sum(packing)})
+
+
+def sum_of_file(path):
+    """SHA-256 of the grains in a packing's file, by which a run knows it again; None where it can't be read."""
+    try:
+        return _sum_as_written(path, os.stat(path).st_mtime_ns)
+    except (OSError, PackingError):
+        return None
+
+
+@lru_cache
+def _sum_as_written(path, _when):
+    return _sum(load(path))
+
+
+def _sum(packing):
+    return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
+
+
+def _require_material(path, packing, grain_radius, overlap, grains):
+    """Contacts of other grains would pull or press from the start on. Loose cpe packings are meant (initialOverlap)."""
+    stored = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
+    wanted = {name: (getattr(grains, name, None), 1e-6) for name in OF_CONTACTS}
+    wanted["grainRadius"] = grain_radius, 1e-6
+    if stored.get("packing") != "cpe":
+        wanted["overlap"] = overlap, AT_REST
+    for name, (value, tolerance) in wanted.items():
+        if None in (stored.get(name), value) or np.isclose(stored[name], value, rtol=tolerance, atol=0):
+            continue
+        must = "must be a packing of the run's grains (one material for all)"
+        raise PackingError(f"{path}: made of grains with {name} = {stored[name]:.3g}, not {value:.3g}; {must}")
+
+
+def _require_shallow(path, packing, grain_radius, overlap):
+    """No contact may be far deeper than at rest."""
+    pairs = contacts(packing)
+    if not len(pairs):
+        return
+    deep = -surface_gaps(packing.position, packing.radius, pairs)
+    at_rest = equilibrium_overlaps(packing.radius, pairs, grain_radius, overlap)
+    worst = np.argmax(deep / at_rest)
+    if deep[worst] > DEEPEST * at_rest[worst]:
+        must = f"must be at most {DEEPEST:g} of the equilibrium overlap of {at_rest[worst]:.3g} m"
+        first, second = pairs[worst]
+        raise PackingError(f"{path}: grains {first} and {second} overlap by {deep[worst]:.3g} m; {must}")

@@ -11,6 +11,7 @@ export.textExt, and files that the others write.
 import locale
 import re
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from analysis.arrays import numbers
 from analysis.runs.files import RunFolderError, array_names, read_arrays
 from analysis.runs.folder import LARGEST
 from yade_scripts.packings.packing import PackingError
+from yade_scripts.parameters import one_line
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
@@ -54,11 +56,8 @@ class Spheres:
 
     @property
     def resolution(self):
-        """The last digit that is written of a coordinate, in the file's unit.
-
-        Programs write a fixed number of decimals, or of significant digits. Numbers that were read from text have the
-        same shortest representation as there; so have those of 32 bits.
-        """
+        """The last digit that is written of a coordinate, in the file's unit. Programs write a fixed number of
+        decimals, or of significant digits; numbers have the same shortest representation as in the text."""
         array = self.position.ravel()
         sample = array[np.linspace(0, array.size - 1, min(array.size, SAMPLE)).astype(int)]
         written = [np.format_float_scientific(number).split("e") for number in sample if number]
@@ -71,11 +70,8 @@ class Spheres:
 
 
 def read_spheres(path, most, names=None):
-    """Spheres of a file; names: of the columns of a table, instead of its own.
-
-    Raises PackingError where the file is of none of FORMATS, has fewer than 2 grains or more than `most`, or holds
-    what is no number.
-    """
+    """Spheres of a file; names: of the columns of a table, instead of its own. Raises PackingError where the file is of
+    none of FORMATS, has fewer than 2 grains or more than `most`, or holds what is no number."""
     with open(path, "rb") as file:
         content = file.read()
     start = content[:4096]
@@ -93,8 +89,7 @@ def read_spheres(path, most, names=None):
         if not 2 <= len(spheres.position) <= most:
             raise ValueError(f"holds {len(spheres.position)} grains; must be 2 to {most}")
     except (ValueError, RunFolderError) as error:
-        reason = " ".join(str(error).split())
-        raise PackingError(f"{path}: {reason.removeprefix(f'{path}: ')}") from None
+        raise PackingError(f"{path}: {one_line(error).removeprefix(f'{path}: ')}") from None
     return spheres
 
 
@@ -154,8 +149,7 @@ def _of_yaml(content):
 # ---- tables of text ----
 
 
-@dataclass(frozen=True)
-class Table:
+class Table(NamedTuple):
     """Where the grains are among the lines of a text."""
 
     kind: str
@@ -189,12 +183,11 @@ def _find_table(lines):
         raise ValueError("empty; must be a file of grains")
     if next(filter(None, head)).startswith("ITEM:"):
         return _dump(lines)
-    if any(re.match(r"\d+\s+atoms\b", line) for line in head):
-        return _data(lines)
+    if atoms := [number for number, line in enumerate(head) if re.match(r"\d+\s+atoms\b", line)]:
+        return _data(lines, _count(lines, atoms[0]))
     if head[0].isdecimal():
         return _xyz(lines)
-    words = head[0].split()
-    rows = [line.split() for line in head[5:] if line]
+    words, rows = head[0].split(), [line.split() for line in head[5:] if line]
     if 3 <= len(words) < 7 and words[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
         # aggregate.txt of DustCollider: N and two radii, four lines, the grains in nm
         names = ["x", "y", "z", "-", "radius", "-", "material"]
@@ -210,24 +203,26 @@ def _count(lines, number):
     return int(word)
 
 
+def _frames(frames):
+    return f"the last of {len(frames)} frames" if len(frames) > 1 else "one frame"
+
+
 def _dump(lines):
     """ITEM: NUMBER OF ATOMS, a line with it, ..., ITEM: ATOMS and names, the grains; again for each frame."""
     counts = [number + 1 for number, line in enumerate(lines) if line.startswith("ITEM: NUMBER OF ATOMS")]
     frames = [number for number, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
-    rows = _count(lines, counts[-1]) if counts else None
     if not frames:
         raise ValueError("no ITEM: ATOMS; must have one")
+    rows = _count(lines, counts[-1]) if counts else None
     return Table(f"LAMMPS dump, {_frames(frames)}", frames[-1] + 1, rows, lines[frames[-1]].split()[2:])
 
 
-def _data(lines):
+def _data(lines, rows):
     """N atoms in the header; Atoms # style, an empty line, the grains."""
-    header = next(number for number, line in enumerate(lines) if re.match(r"\s*\d+\s+atoms\b", line))
     for number, line in enumerate(lines):
         if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", line):
             names = ATOM_STYLES[section[1]].split() if section[1] in ATOM_STYLES else None
-            kind = f"LAMMPS data, atom style {section[1] or 'without name'}"
-            return Table(kind, number + 1, _count(lines, header), names)
+            return Table(f"LAMMPS data, atom style {section[1] or 'without name'}", number + 1, rows, names)
     raise ValueError("no section Atoms; must have one")
 
 
@@ -236,28 +231,16 @@ def _xyz(lines):
     frames = [0]
     while (after := frames[-1] + 2 + _count(lines, frames[-1])) < len(lines) and lines[after].strip():
         frames.append(after)
-    last = frames[-1]
-    about, first_row = (lines[last + 1 : last + 3] + ["", ""])[:2]
-    names = None
-    if properties := re.search(r'Properties="?([^"\s]+)', about):
-        names = _properties(properties[1])
-    elif len(row := first_row.split()) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
+    about, first = (lines[frames[-1] + 1 : frames[-1] + 3] + ["", ""])[:2]
+    kind, names, row = "xyz", None, first.split()
+    if properties := re.search(r'Properties="?([^"\s]+)', about):  # species:S:1:pos:R:3:radius:R:1
+        kind, names, words = "extended xyz", [], properties[1].split(":")
+        for name, count in zip(words[::3], words[2::3]):
+            together = "xyz" if name.lower() in POSITIONS else [f"{name}_{part}" for part in range(int(count))]
+            names += [name] if count == "1" else together
+    elif len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
         names = ["species", "x", "y", "z", "radius"][: len(row)]  # x y z may be without a species: then not known
-    kind = "extended xyz" if properties else "xyz"
-    return Table(f"{kind}, {_frames(frames)}", last + 2, _count(lines, last), names)
-
-
-def _properties(text):
-    """Names of all columns, of species:S:1:pos:R:3:radius:R:1."""
-    words, names = text.split(":"), []
-    for name, count in zip(words[::3], words[2::3]):
-        together = "xyz" if name.lower() in POSITIONS else [f"{name}_{part}" for part in range(int(count))]
-        names += [name] if count == "1" else together
-    return names
-
-
-def _frames(frames):
-    return f"the last of {len(frames)} frames" if len(frames) > 1 else "one frame"
+    return Table(f"{kind}, {_frames(frames)}", frames[-1] + 2, _count(lines, frames[-1]), names)
 
 
 def _plain(head):
@@ -293,10 +276,8 @@ def _is_number(word):
 
 
 def _columns(names, axes="xyz"):
-    """{name of COLUMNS: number of the column} of the names of a file's columns, which must have `axes` among them.
-
-    Names go without case, quotes and a unit in brackets.
-    """
+    """{name of COLUMNS: number of the column} of the names of a file's columns, which must have `axes` among them;
+    names go without case, quotes and a unit in brackets."""
     plain = [re.sub(r"[\[(].*[\])]", "", str(name)).strip(" \t\"'_").lower() for name in names]
     found = {}
     for name, aliases in COLUMNS.items():

@@ -17,8 +17,7 @@ import numpy as np
 from analysis.printable import shell_line
 from analysis.runs.files import RunFolderError, npz, read_arrays, read_bytes, read_json
 from analysis.runs.format import CHECKPOINT_FOLDER, ENDED_FILE, RUN_FILE, same
-from yade_scripts.parameters import ParameterError
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError, ParameterError
 from yade_scripts.run.parameters import CORES
 
 RECORDER = f"{CHECKPOINT_FOLDER}/recorder.npz"
@@ -47,48 +46,37 @@ class Checkpoint:
 
     @classmethod
     def read(cls, run_folder):
-        """The checkpoint in a run folder; scene and states are not read until require_whole(). Raises InputError."""
+        """The checkpoint in a run folder; scene and states are not read until require(). Raises InputError."""
         try:
             found = read_arrays(os.path.join(run_folder, RECORDER), ["rows"], texts=["about"])
             return cls(run_folder, found["rows"], **json.loads(found["about"]))
         except (RunFolderError, ValueError, TypeError) as error:
-            raise InputError(
-                f"{run_folder}/{CHECKPOINT_FOLDER}: not a checkpoint ({error}); must be removed to start the run again"
-            ) from None
+            where = f"{run_folder}/{CHECKPOINT_FOLDER}"
+            raise InputError(f"{where}: not a checkpoint ({error}); must be removed to start again") from None
 
-    def require_agreement(self, difference, made_with):
-        """Raise InputError unless it is of the run that is wanted, and written by this software: the layout of what
-        YADE saves belongs to one build.
+    def require(self, difference, made_with, duration, ended):
+        """Raise InputError unless it is of the run that is wanted, written by this software (the layout of what YADE
+        saves belongs to one build), as it was written, and has time left.
 
-        difference: of its run from the wanted one (difference()), or None; made_with: as script.made_with() gives it.
-        """
+        difference: of its run from the wanted one (difference()), or None; made_with: as script.made_with() gives it;
+        duration: that is wanted [s]; ended: whether the run came to its end, so that it must be longer."""
+        where = f"{self.run_folder}/{CHECKPOINT_FOLDER}"
         names = ("yade", "contact_law", "the plugin of commit")
         written, present = ({**made["versions"], names[2]: made["commit"]} for made in (self.run, made_with))
         differing = [name for name in names if written[name] != present[name]]
         reasons = [f"written by {name} {written[name]}, not {present[name]}" for name in differing]
         reasons += [f"of a run with {difference}"] if difference else []
         if reasons:
-            raise InputError(
-                f"{self.run_folder}/{CHECKPOINT_FOLDER}: {reasons[0]}; must be the same, or removed to start again"
-            )
-
-    def require_time_left(self, duration, ended):
-        """Raise InputError when the run has come further than the duration [s], or, one that has ended, as far."""
-        reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
-        if reached * (1 + 1e-9 * (1 if ended else -1)) > duration:
-            raise InputError(
-                f"duration = {duration:.6g} s: the run in {self.run_folder} has come to {reached:.6g} s; must be longer"
-            )
-
-    def require_whole(self):
-        """Raise InputError unless the scene and the states before it are what was written."""
+            raise InputError(f"{where}: {reasons[0]}; must be the same, or removed to start again")
         try:
             for name, digits in self.sums.items():
                 read_bytes(os.path.join(self.run_folder, name), digits)
         except RunFolderError as error:
-            raise InputError(
-                f"{error}; must be as it was written, or {self.run_folder}/{CHECKPOINT_FOLDER} removed"
-            ) from None
+            raise InputError(f"{error}; must be as it was written, or {where} removed") from None
+        reached = self.rows[-1][self.columns.index("time")] if len(self.rows) else 0.0
+        if reached * (1 + 1e-9 * (1 if ended else -1)) > duration:
+            reached = f"the run in {self.run_folder} has come to {reached:.6g} s"
+            raise InputError(f"duration = {duration:.6g} s: {reached}; must be longer")
 
 
 class CheckpointWriter:
@@ -146,12 +134,10 @@ def _saved_scene(omega):
 def difference(kind, wanted, run, but=()):
     """The first parameter in which a run is not what is wanted, 'name = this, not that', or None.
 
-    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run that was
-    continued has a longer duration than is wanted, and is what is wanted all the same. A step that is still to be
-    chosen is that of any run that chose it for the same tolerance; a number is compared as such.
+    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run may be longer
+    than is wanted. A step that is still to be chosen is that of any run that chose it for the same tolerance.
 
-    kind: run.kind.Kind; wanted: parameters of that kind; run: as in run.json; but: names that are not compared.
-    """
+    kind: run.kind.Kind; wanted: parameters of that kind; run: as in run.json; but: names that are not compared."""
     there = run.get("kind", "collision")  # format 1 had collisions only
     if there != kind.name:
         return f"kind = {there}, not {kind.name}"
@@ -191,13 +177,11 @@ def continued(kind, texts):
     except (RunFolderError, KeyError, TypeError) as error:
         raise ParameterError(f"{CONTINUE} = {folder}: {error}; must be the folder of a run") from None
     if run.get("kind") != kind.name or set(held) != set(columns):
-        raise ParameterError(
-            f"{CONTINUE} = {folder}: a run of another kind or version; must be a {kind.name} of this version"
-        )
+        must = f"must be a {kind.name} of this version"
+        raise ParameterError(f"{CONTINUE} = {folder}: a run of another kind or version; {must}")
     if os.path.exists(os.path.join(folder, ENDED_FILE)) and not exists(folder):
-        raise ParameterError(
-            f"{CONTINUE} = {folder}: the run has ended, decided; must be one that was stopped, or is undecided"
-        )
+        must = "must be one that was stopped, or is undecided"
+        raise ParameterError(f"{CONTINUE} = {folder}: the run has ended, decided; {must}")
     threads = held["threads"] and min(held["threads"], CORES)  # of another machine
     held |= {"threads": threads, **{name: getattr(found, name) for name in given}}
     return kind.parameters(**{**held, "out": folder, "resume": 1, "overwrite": 0})

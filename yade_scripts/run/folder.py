@@ -18,7 +18,7 @@ from analysis.runs.format import (
     STATES_FOLDER,
     state_file,
 )
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError
 from yade_scripts.run import checkpoint
 
 # Names of files, relative to the folder, that runs write; nothing else is ever removed.
@@ -58,10 +58,8 @@ class RunFolder:
         if ended and not (overwrite or resume and stopped):
             raise InputError(f"out = {self.path}: holds a run that has ended; must be another folder, or overwrite=1")
         if stopped and not (resume or overwrite):
-            raise InputError(
-                f"out = {self.path}: holds a run that was stopped, with a checkpoint; must be another folder, "
-                "or resume=1 (to continue it) or overwrite=1 (to start again)"
-            )
+            must = "must be another folder, or resume=1 (to continue it) or overwrite=1 (to start again)"
+            raise InputError(f"out = {self.path}: holds a run that was stopped, with a checkpoint; {must}")
         if stopped and resume and not (overwrite and ended):
             self.checkpoint = checkpoint.Checkpoint.read(self.path)
         else:

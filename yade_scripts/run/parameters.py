@@ -59,28 +59,25 @@ class RunParameters(Parameters):
 
     @classmethod
     def parse(cls, texts, description=None):
-        """As Parameters.parse; `out` is named after the table's row (description) or the parameters where it isn't
-        given."""
+        """As Parameters.parse; `out` is named after the table's row (description) or the parameters."""
         found = super().parse(texts)
         if found.out is not None:
             return found
-        return found.changed(out="runs/" + (file_name(description or found._name_with(texts)).lstrip(".") or "run"))
+        name, in_name = found.title()  # and whatever else was given and has consequences
+        others = [key for key in sorted(texts) if key not in in_name and cls.columns()[key].of_consequence]
+        name += "".join(f"-{key}{value_text(getattr(found, key))}" for key in others)
+        return found.changed(out="runs/" + (file_name(description or name).lstrip(".") or "run"))
 
     def title(self):
         """(name of a run of these parameters, names of the parameters that are in it)."""
         return "run", ()
 
+    ONLY_WITH = [("tolerance", "stepFraction", [AUTO])]
+
     def filled_in(self):
-        """The default tolerance with stepFraction=auto; without it a tolerance is refused."""
-        found = self
-        if self.stepFraction == AUTO:
-            found = self.changed(tolerance=TOLERANCE if self.tolerance is None else self.tolerance)
-        elif self.tolerance is not None:
-            raise ParameterError(
-                f"tolerance = {self.tolerance:g}: given with stepFraction = {self.stepFraction:g}; must be left out, "
-                f"or stepFraction be {AUTO}"
-            )
-        return super(RunParameters, found).filled_in()
+        """The default tolerance with stepFraction=auto."""
+        chosen = self.stepFraction == AUTO and self.tolerance is None
+        return super(RunParameters, self.changed(tolerance=TOLERANCE) if chosen else self).filled_in()
 
     def with_threads(self, of_yade):
         """The same with the number of threads; of_yade: those that YADE was started with."""
@@ -91,13 +88,6 @@ class RunParameters(Parameters):
             must = "must be the same (yade -jN, or the column !OMP_NUM_THREADS of a table)"
             raise ParameterError(f"threads = {threads}: YADE was started with {of_yade}; {must}")
         return self.changed(threads=threads)
-
-    def _name_with(self, texts):
-        """The title, and whatever else was given and has consequences."""
-        name, in_name = self.title()
-        columns = self.columns()
-        others = (key for key in sorted(texts) if key not in in_name and columns[key].of_consequence)
-        return name + "".join(f"-{key}{value_text(getattr(self, key))}" for key in others)
 
 
 def file_name(text):
@@ -123,25 +113,18 @@ def from_arguments(arguments):
 
 
 def gather(arguments, kind):
-    """({name: text}, description) of a script: the row of a table, and the arguments on top of it. The description is
-    None without a row, and where an argument of consequence makes another run of it.
+    """({name: text}, description) of a script: the row of a table (YADE_BATCH, or table=FILE:LINE), and the arguments.
 
-    The row is the one that yade-batch names (YADE_BATCH=FILE:LINE), or that of an argument table=FILE:LINE."""
+    The description is None without a row, and where an argument of consequence makes another run of it."""
     texts = from_arguments(arguments)
     where = texts.pop("table", None) or os.environ.get("YADE_BATCH")
     if not where:
         return texts, None
-    row, known = _row(where), kind.parameters.columns()
-    another = any(name not in known or known[name].of_consequence for name in texts)
-    return {**row.parameters, **texts}, (None if another else row.description)
-
-
-def _row(where):
-    """The table.Row of FILE:LINE, lines counted from 1."""
     file, _, line = where.rpartition(":")
     if not file:
         raise ParameterError(f"table = {where}: must be FILE:LINE, one row of a table; study.py runs all")
-    rows = {str(found.line): found for found in table.read(file)}
+    rows, known = {str(row.line): row for row in table.read(file)}, kind.parameters.columns()
     if line not in rows:
         raise ParameterError(f"table {where}: no such row; must be a line of {', '.join(rows)}")
-    return rows[line]
+    another = any(name not in known or known[name].of_consequence for name in texts)
+    return {**table.own(rows[line].cells), **texts}, (None if another else rows[line].description)

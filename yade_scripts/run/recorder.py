@@ -38,10 +38,8 @@ class Recorder:
     """sample() takes one row of the history, and some states: for a PyRunner that is the last engine.
 
     kind_format: a RunKind, which names the columns; scene: a run.kind.Scene, at whose end .finished becomes true.
-    Optional series are those that the scene or the engine's statistics() have at the first sample; broken bonds by mode
-    where there are bonds then, and in states where there are any. An exception is kept in .error for the loop to find
-    (YADE would print pages of it).
-    """
+    Optional series are those that are there at the first sample; broken bonds by mode are in states that have bonds.
+    An exception is kept in .error for the loop to find (YADE would print pages of it)."""
 
     def __init__(self, folder, schedule, kind_format, scene):
         self.folder, self.schedule, self.scene = folder, schedule, scene

@@ -29,8 +29,7 @@ def material_of(grains):
 
 
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
-    """The plugin's constants (SI) of a contact between two grains of the run that have not sintered; under 'bond' None,
-    or where grains are sintered the attributes of JKRWadaBond and shrunkRadius [m].
+    """The plugin's constants (SI) of a contact of two grains; under 'bond' those of a sintered one, or None.
 
     grains: materials.GrainParameters with slidingStiffnessFactor."""
     two = 2 * (material_of(grains), grains.grainRadius)
@@ -109,8 +108,7 @@ def resume(scene, schedule, recorder, saved):
 
 
 def functor_engines(grain_radius, runner, limit="held", **law):
-    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last, after a whole
-    step."""
+    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last."""
     return [
         yade.ForceResetter(),
         yade.InsertionSortCollider(

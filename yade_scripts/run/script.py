@@ -13,8 +13,7 @@ from analysis.printable import printable
 from analysis.progress import tqdm
 from analysis.runs.files import RunFolderError
 from analysis.version import version_text
-from yade_scripts.parameters import ParameterError
-from yade_scripts.parameters.errors import InputError, one_line_errors, tell
+from yade_scripts.parameters import InputError, ParameterError, one_line, one_line_errors, tell
 from yade_scripts.run import checkpoint
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import Schedule
@@ -56,19 +55,16 @@ def main(kind, description):
 
 
 def _open(kind, scene):
-    """The run folder, with its checkpoint if the run resumes from one, and the Schedule, whose interval between
-    samples is then the checkpoint's."""
+    """The run folder, with its checkpoint if the run resumes from one, and the Schedule."""
     given = scene.parameters
     folder = RunFolder(given.out, given.overwrite, given.resume)
     saved = folder.checkpoint
+    interval = saved.interval if saved else None
+    schedule = Schedule.of(given.duration, scene.time_step, scene.interval, states=given.states, kept=interval)
     try:
         if saved:
-            saved.require_agreement(checkpoint.difference(kind, given, saved.run, but=("duration",)), made_with())
-        interval = saved.interval if saved else None
-        schedule = Schedule.of(given.duration, scene.time_step, scene.interval, states=given.states, kept=interval)
-        if saved:
-            saved.require_whole()
-            saved.require_time_left(schedule.steps * scene.time_step, folder.has_ended())
+            difference = checkpoint.difference(kind, given, saved.run, but=("duration",))
+            saved.require(difference, made_with(), schedule.steps * scene.time_step, folder.has_ended())
             folder.resume()
     except BaseException:
         folder.close()
@@ -112,7 +108,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
         if undecided:
             writer.save()
     except (OSError, RuntimeError, RunFolderError) as error:  # a folder's, or a scene's that YADE can't load
-        outcome, status = f"failed: {_one_line(error)}", 1
+        outcome, status = f"failed: {one_line(error)}", 1
     run["timeReached"] = recorder.time
     try:
         write(outcome)
@@ -120,7 +116,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
             folder.write_ended()
     except OSError as error:
         if not outcome.startswith("failed"):
-            outcome, status = f"failed: {_one_line(error)}", 1
+            outcome, status = f"failed: {one_line(error)}", 1
             with suppress(OSError):
                 write(outcome)
     if outcome == "completed" and not undecided:
@@ -146,7 +142,7 @@ def _step(steps, recorder, runner, begin, writer):
             omega.step()
             progress.update()
             if recorder.error:
-                return f"failed: {_one_line(recorder.error)}", 1
+                return f"failed: {one_line(recorder.error)}", 1
             if recorder.finished:
                 break
             writer.save_if_due()
@@ -157,7 +153,7 @@ def _step(steps, recorder, runner, begin, writer):
                 return "interrupted", 128 + stop.received
     except (RuntimeError, OSError) as error:  # from an engine, or a checkpoint that can't be written
         recorder.write_last_good()
-        return f"failed: {_one_line(error)}", 1
+        return f"failed: {one_line(error)}", 1
     finally:
         progress.close()
         stop.restore()
@@ -179,13 +175,6 @@ def _print_end(path, run, outcome, undecided, seconds):
         print(f"run folder: {printable(path)} ({printable(outcome)}, {seconds:.1f} s)", flush=True)
     except OSError:  # what is left in the buffer would fail again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _one_line(error):
-    """The message of an exception, on one line."""
-    if isinstance(error, OSError) and error.filename:
-        return f"{error.filename}: {error.strerror}"
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 class StopSignals:
@@ -220,6 +209,5 @@ def hardware():
     """{'cpu': model, 'cores': number} of this machine."""
     model = platform.machine()
     with suppress(OSError), open("/proc/cpuinfo") as lines:
-        names = (line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
-        model = next(names, model)
+        model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), model)
     return {"cpu": model, "cores": os.cpu_count()}

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from analysis.runs.files import write_file
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError
 
 
 @dataclass(frozen=True)
@@ -15,18 +15,15 @@ class Row:
     description: str
     cells: dict
 
-    @property
-    def parameters(self):
-        """The cells without yade-batch's own columns."""
-        return {name: text for name, text in self.cells.items() if name[0] != "!"}
+
+def own(cells):
+    """The cells of parameters, without yade-batch's columns."""
+    return {name: text for name, text in cells.items() if name[0] != "!"}
 
 
 def read(path):
-    """The rows of a table in their order: = repeats the cell above, and cells with * are left out.
-
-    Columns named !... are yade-batch's own and stay. Raises InputError when the file can't be read, a row has
-    another number of cells than the header, two columns have one name, or there are no rows.
-    """
+    """[Row] of a table: = repeats the cell above, cells with * are left out. Raises InputError when the file can't be
+    read, a row has another number of cells than the header, two columns have one name, or there are no rows."""
     try:
         with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
             lines = [re.sub(r"\s*#.*", "", line).split() for line in file]

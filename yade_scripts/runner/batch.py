@@ -8,7 +8,8 @@ import subprocess
 from contextlib import suppress
 from multiprocessing.connection import wait
 
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError
+from yade_scripts.run import table
 from yade_scripts.runner.rows import summary
 
 LOGS = os.path.join("runs", "logs")
@@ -41,13 +42,8 @@ class StudyFolder:
         try:
             fcntl.flock(self.held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise InputError(
-                f"{self.path}: this study is being run by another process, or its last jobs still "
-                "are; must be one at a time (--status shows how far it is)"
-            ) from None
-
-    def unlock(self):
-        os.close(self.held)
+            what = "this study is being run by another process, or its last jobs still are"
+            raise InputError(f"{self.path}: {what}; must be one at a time (--status shows how far it is)") from None
 
 
 class Batch:
@@ -123,7 +119,7 @@ class Worker:
     def begin(self, row, log):
         """Have it run a row (rows.StudyRow), which resumes if it was stopped; its output goes to the end of the log."""
         self.row, self._run, self._log, self._stopped = row, None, os.path.abspath(log), False
-        cells = {**row.own_cells, "out": row.out, "resume": 1}
+        cells = {**table.own(row.cells), "out": row.out, "resume": 1}
         arguments = [f"{name}={text}" for name, text in cells.items()]
         task = dict(script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=self._log)
         with open(log, "a"), suppress(OSError):  # a worker that has died: poll() finds out

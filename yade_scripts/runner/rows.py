@@ -11,9 +11,7 @@ from analysis.runs.format import ENDED_FILE, same
 from analysis.runs.lock import under_way
 from analysis.runs.status import DONE, FAILED, WAITING, State
 from yade_scripts.experiments import collision, compression
-from yade_scripts.parameters import ParameterError, UnknownParameter
-from yade_scripts.parameters.arithmetic import NotANumber, evaluate
-from yade_scripts.parameters.errors import InputError
+from yade_scripts.parameters import InputError, NotANumber, ParameterError, UnknownParameter, evaluate
 from yade_scripts.run import checkpoint, table
 from yade_scripts.run.kind import Kind
 from yade_scripts.run.parameters import RunParameters, file_name
@@ -30,10 +28,9 @@ STOPPED = (128 + signal.SIGINT, 128 + signal.SIGTERM)  # exit statuses of a run 
 
 @dataclass(frozen=True)
 class StudyRow:
-    """A row of a table.
+    """A row of a table; where it is wrong, parameters is None and error has the reason.
 
-    kind and parameters are of the script in KINDS; with a script of a user's own kind is None, and the parameters are
-    those of every kind. Where they are wrong, parameters is None and error has the reason."""
+    With a script of a user's own kind is None, and the parameters are those of every kind."""
 
     name: str
     cells: dict
@@ -53,11 +50,6 @@ class StudyRow:
         """Processors that the run takes."""
         return self.threads_of_yade or self.parameters.threads or 1
 
-    @property
-    def own_cells(self):
-        """The cells without yade-batch's own."""
-        return {name: text for name, text in self.cells.items() if name[0] != "!"}
-
     @cached_property
     def expected_seconds(self):
         """Seconds that its run should take: steps times contacts at SPEED; None for a kind of a user's own."""
@@ -69,9 +61,7 @@ class StudyRow:
 
 
 def read(path):
-    """[StudyRow] of a table; raises InputError, also when two rows would write to one folder or one log.
-
-    Rows without !SCRIPT are collisions."""
+    """[StudyRow] of a table; raises InputError, also when two rows would write to one folder or one log."""
     rows, lines = [], {}
     for row in table.read(path):
         for name in row.cells:
@@ -95,13 +85,14 @@ def _row(path, row):
     """StudyRow of a table.Row; raises InputError for a column that is no parameter."""
     name = row.cells.get("!SCRIPT", "yade_scripts/collide.py")
     script = name if os.path.isfile(name) else os.path.join(TOP, name)  # one's own, or below the top of this suite
-    kind = kind_of(script)
+    folder, file = os.path.split(os.path.realpath(script))
+    kind = KINDS.get(file) if folder == os.path.realpath(SCRIPTS) else None
     found = StudyRow(file_name(row.description), row.cells, script, kind)
     try:
         if not os.path.isfile(script):
             raise ParameterError(f"{name}: no such script")
         if kind:
-            parameters = kind.parse(row.parameters, row.description)
+            parameters = kind.parse(table.own(row.cells), row.description)
         else:
             known = {name: cell for name, cell in row.cells.items() if name in ("out", "threads")}
             parameters = RunParameters.parse(known, row.description)
@@ -111,12 +102,6 @@ def _row(path, row):
         raise InputError(f"{path}: {problem}, of {of}") from None
     except ParameterError as problem:
         return replace(found, error=f"line {row.line} of {path}: {problem}")
-
-
-def kind_of(script):
-    """The Kind of a script (path), None of one of a user's own."""
-    folder, name = os.path.split(os.path.realpath(script))
-    return KINDS.get(name) if folder == os.path.realpath(SCRIPTS) else None
 
 
 def _threads_of_yade(cells, parameters):
@@ -164,7 +149,7 @@ def _difference(row, run, but=()):
     if row.kind:
         return checkpoint.difference(row.kind, row.parameters, run, but)
     columns = RunParameters.columns()
-    for name, text in row.own_cells.items():
+    for name, text in table.own(row.cells).items():
         held = run.get("parameters", {}).get(name, text)
         try:
             wanted = evaluate(text)
@@ -193,14 +178,12 @@ def _stopped(folder, run):
 
 
 def summary(code):
-    """The end of a log; nothing for a run that was stopped, which has not failed. code: its exit status, as a shell
-    has it."""
+    """The end of a log, by an exit status as a shell has it; nothing for a run that was stopped."""
     return "" if code in STOPPED else f"\nJOB SUMMARY\nstatus  : {code << 8} ({'FAILED' if code else 'OK'})\n"
 
 
 def failure(log, folder):
-    """Why the run of a log and a run folder (paths) failed, in one line; None when it did not, was stopped, or is
-    under way."""
+    """Why the run of a log and a run folder (paths) failed, in one line, or None."""
     try:
         with open(log, errors="replace") as file:
             text, _, end = file.read().partition("JOB SUMMARY")

@@ -6,10 +6,9 @@ a task printed. The logs of the runs are where a local runner has them. Slurm st
 
     python3 slurm.py ROWS.table NUMBER TASKS      every row of that number, counted from 1, then each TASKS further on
 
-A run that has ended is not run again, one with other parameters is refused, one that was stopped resumes. SIGUSR1,
-which Slurm sends before the time limit, has the run write its checkpoint; if a run has come further in this task, the
-task is put into the queue again. Exit status: 0 when all runs have ended, 1 when one has not, 128 and the signal's
-number when stopped."""
+SIGUSR1, which Slurm sends before the time limit, has the run write its checkpoint; if a run has come further in this
+task, the task is put into the queue again. Exit status: 0 when all runs have ended, 1 when one has not, 128 and the
+signal's number when stopped."""
 
 import os
 import re
@@ -27,7 +26,7 @@ from analysis.printable import printable
 from analysis.runs.files import write_file
 from analysis.runs.lock import states_of_job, this_job
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
-from yade_scripts.parameters.errors import InputError, one_line_errors, tell
+from yade_scripts.parameters import InputError, one_line_errors, tell
 from yade_scripts.run import table
 from yade_scripts.run.parameters import file_name
 from yade_scripts.run.script import StopSignals

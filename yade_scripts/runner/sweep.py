@@ -71,7 +71,7 @@ def _sweep(kind, script, parameters, folder, jobs):
     try:
         states = study.run()
     finally:
-        study.folder.unlock()
+        os.close(study.folder.held)
     if undecided := study.undecided(states):
         print(f"{len(rows)} runs{undecided}")
     wrong = [f"{row.name}: {state.note}" for row, state in zip(study.rows, states) if state.kind != DONE]

@@ -26,7 +26,6 @@ LOADED = (
     "yade_scripts.run.script",
     "multiprocessing.synchronize",
 )
-SIGNAL_OF_PARENTS_DEATH = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
 def serve(connection):
@@ -54,7 +53,7 @@ def _become(connection, script, arguments, threads, log):
         output = os.open(log, os.O_WRONLY | os.O_APPEND)
         os.dup2(output, 1)
         os.dup2(output, 2)
-        libc.prctl(SIGNAL_OF_PARENTS_DEATH, signal.SIGTERM)
+        libc.prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG: at the death of its parent
         signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
         connection.send((os.getpid(), None))
@@ -66,7 +65,10 @@ def _become(connection, script, arguments, threads, log):
             exec(compile(file.read(), script, "exec"), vars(sys.modules["__main__"]))
         status = 0
     except SystemExit as end:
-        status = _status(end.code)
+        status = end.code or 0
+        if not isinstance(status, int):  # a text, which Python prints
+            print(status, file=sys.stderr)
+            status = 1
     except BaseException:
         traceback.print_exc()
     finally:
@@ -76,17 +78,8 @@ def _become(connection, script, arguments, threads, log):
         os._exit(status & 0xFF)  # not by what the process that was forked does at its end
 
 
-def _status(code):
-    """The exit status of a SystemExit; a text is printed, as Python does."""
-    if code is None or isinstance(code, int):
-        return code or 0
-    print(code, file=sys.stderr)
-    return 1
-
-
 def _use_threads(number):
-    """Have YADE's own loop use that many threads: a process that has used more than one can't be forked, so each run
-    does it by itself."""
+    """Have YADE's own loop use that many threads; a process that has used more than one can't be forked."""
     from yade.wrapper import Omega
 
     ctypes.CDLL("libgomp.so.1").omp_set_num_threads(number)

@@ -21,8 +21,9 @@ import argparse
 import os
 import sys
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.stats import qmc
@@ -66,27 +67,9 @@ CELL_HEAD = """Cells that are compressed, out of which the atlas's compressed ag
 Units: strainRate: 1/t0; stepFraction: t0."""
 
 
-@dataclass(frozen=True)
-class Scene:
-    """A row: grains and packing files of target and projectile, velocity [m/s], filling of CPE and compressed
-    aggregates, seed of its packings, cell of a compressed pair and that cell's table."""
-
-    name: str
-    held: bool
-    structure: str
-    material: str
-    grains: tuple
-    velocity: float
-    impact: float
-    filling: float
-    seed: int
-    cell: int
-    cells: str
-    files: tuple
-
-
 def scenes(rows):
-    """[Scene] of the first rows."""
+    """What the first rows are of, a SimpleNamespace each: grains and packing files of target and projectile, velocity
+    [m/s], filling of CPE and compressed aggregates, seed, cell of a compressed pair and that cell's table."""
     points = _points(-(-rows // BLOCK) * BLOCK)
     found = []
     for first in range(0, len(points), BLOCK):
@@ -128,7 +111,7 @@ def _scene(number, point, silicate, held):
     scale = breaking_velocity(SILICATE, GRAIN_RADIUS) / breaking_velocity(ICE, GRAIN_RADIUS) if silicate else 1.0
     low, high = FILLINGS.get(structure, (0.0, 0.0))
     cells, cell_seeds = CELLS_OF[most]
-    return Scene(
+    return SimpleNamespace(
         name=f"{number:05d}" + ("-held" if held else ""),
         held=held,
         structure=structure,
@@ -145,24 +128,15 @@ def _scene(number, point, silicate, held):
 
 
 def row(scene):
-    """{column: value} of a Scene in the table of runs."""
+    """{column: value} of a scene in the table of runs."""
     if scene.structure in FILLINGS:
         aggregates = {"packing": "file", **dict(zip(("file", "projectileFile"), scene.files))}
     else:
         target, projectile = scene.grains
         aggregates = {"packing": scene.structure, "grains": target, "projectileGrains": projectile, "seed": scene.seed}
-    return {
-        "description": scene.name,
-        **aggregates,
-        "velocity": f"{scene.velocity:.6g}",
-        "impact": f"{scene.impact:.6g}",
-        "material": scene.material,
-        "grainRadius": GRAIN_RADIUS,
-        "stepFraction": step(scene),
-        "threads": 1,
-        "states": STATES,
-        "out": f"{RUNS}/{scene.name}",
-    }
+    row = {"description": scene.name, **aggregates, "velocity": f"{scene.velocity:.6g}"}
+    row |= {"impact": f"{scene.impact:.6g}", "material": scene.material, "grainRadius": GRAIN_RADIUS}
+    return {**row, "stepFraction": step(scene), "threads": 1, "states": STATES, "out": f"{RUNS}/{scene.name}"}
 
 
 def never_touch(cells):
@@ -201,8 +175,7 @@ def _close_packed(scene, index):
 
 
 def _compressed(scene, index):
-    """A sphere out of the state of the cell with the nearest filling: the first place in which KEPT of the grains hang
-    together."""
+    """A sphere out of the state with the nearest filling, of which KEPT of the grains hang together."""
     fillings = _fillings(f"{CELLS}/s{scene.cell}/states", scene.cells)
     file = list(fillings)[round(np.interp(scene.filling, list(fillings.values()), range(len(fillings))))]
     state = read_periodic_state(file)

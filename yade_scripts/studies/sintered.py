@@ -29,7 +29,7 @@ from yade_scripts import packings
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
 from yade_scripts.packings.from_run import largest_piece_of_run, turned
 from yade_scripts.packings.packing import Packing, PackingError
-from yade_scripts.parameters.errors import tell
+from yade_scripts.parameters import tell
 from yade_scripts.run.parameters import CORES
 
 GRAINS, SEEDS = 1024, range(1, 11)
@@ -146,8 +146,6 @@ BEYOND = unique(
 )
 POINTS = {"desk": unique(DESK, SPACE), "full": FULL, "beyond": BEYOND}
 HEAD = """Sirono & Ueno (2017), Figs 6 to 17: head-on collisions of sintered aggregates of 1,024 ice grains. {}
-10 seeds a point where the paper has five runs.
-Compacted aggregates (packing = file) are made by sintered.py grow, which make study-sintered runs first.
 The paper's text is read thus: every contact is sintered in its equilibrium, compacted aggregates (one collision at V_g)
 after they have come to rest; ordinary contacts cut their springs at the limits (limit = cut, section 3.2) and
 slide with the spring of eqs 11 and 12 as printed (slidingStiffnessFactor = 2); 20,000 periods of the stretching
@@ -157,8 +155,7 @@ Units: velocity: m/s; criticalRolling: m; viscoelasticTime, duration: s; stepFra
 WHICH = {
     "desk": "A selection.",
     "full": "All of the paper's.",
-    "beyond": "What the desk's runs leave open: compacted aggregates in space, springs held at the limits "
-    "(limit = held), both, xi_crit = 30 Angstrom.",
+    "beyond": "What the desk's leave open: compacted aggregates in space, limit = held, both, xi_crit = 30 Angstrom.",
 }
 
 
@@ -197,10 +194,8 @@ def grow(point, seed):
             if found.grains >= STUCK * 2 * START:
                 break
         else:
-            raise PackingError(
-                f"{point.grown(seed, 0)}: two aggregates of {START} grains did not stick at {point.growth:g} m/s in "
-                f"{ATTEMPTS} orientations; must be a smaller growth velocity"
-            )
+            what = f"halves did not stick at {point.growth:g} m/s in {ATTEMPTS} orientations"
+            raise PackingError(f"{point.grown(seed, 0)}: {what}; must be a smaller growth velocity")
     about = {**found.parameters, "growthVelocity": point.growth, "criticalRolling": point.rolling * 1e-10}
     about |= {"limit": point.limit, "start": START, "generations": 1}
     aggregate = Packing(found.position, found.radius, seed, about)

@@ -12,7 +12,9 @@ from importlib import import_module
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
-from yade_scripts.run import table
+from analysis.printable import meant
+from yade_scripts.parameters import InputError
+from yade_scripts.run.table import write as write_table
 
 STUDIES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 EXAMPLES = ("demo", "seeds")  # which no module makes
@@ -24,28 +26,25 @@ def of_studies():
     return {f"{study}-{size}": (*made, study) for study, tables in tables_of.items() for size, made in tables.items()}
 
 
-def names():
-    return [*of_studies(), *EXAMPLES]
-
-
 def write(name, folder=HERE):
     """Write the table of that name into a folder; its path. Raises KeyError for a name that no study has."""
     rows, head, study = of_studies()[name]
     path = os.path.join(folder, f"{name}.table")
-    table.write(path, rows, f"{head} Written by yade_scripts/studies/{study}.py.")
+    write_table(path, rows, f"{head} Written by yade_scripts/studies/{study}.py.")
     return path
 
 
-def find(name):
-    """Path of a table of this folder, by its name or path, written if it isn't there; None for any other."""
-    folder, file = os.path.split(name)
+def find(table):
+    """Path of a table of this folder, by its name or path, written if it isn't there. Raises InputError for others."""
+    folder, file = os.path.split(table)
     name = file.removesuffix(".table")
     path = os.path.join(HERE, f"{name}.table")
-    if folder and os.path.realpath(folder) != os.path.realpath(HERE):
-        return None
-    if os.path.isfile(path):
-        return path
-    return write(name) if name in of_studies() else None
+    if not folder or os.path.realpath(folder) == os.path.realpath(HERE):
+        if os.path.isfile(path):
+            return path
+        if name in of_studies():
+            return write(name)
+    raise InputError(f"{table}: no such file, nor table{meant(name, [*of_studies(), *EXAMPLES])}; must be one")
 
 
 def main(arguments):

@@ -17,8 +17,7 @@ DURATION = "6.34e-6"  # s: the last time of Fig. 1
 STATES = 21  # every 0.317 us: the times of Figs 1, 10 and 11 are among them
 STEP, LONGER_STEP = 0.1, 0.2  # t0; the longer one for smaller aggregates: its ledger closes to 1e-3 of K(0)
 EDGE = (2, 4, 5)  # twelfths: beside REFERENCE, whose pairs the desk table has too
-# Followed to the end, with a shorter step while the aggregates fly through each other: the ledger closes to 1e-4 of
-# K(0).
+# Followed to the end, with a shorter step while aggregates fly through each other: the ledger closes to 1e-4 of K(0).
 FOLLOWED = {"endWhenApart": 0, "stepFraction": 0.2, "impactStepFraction": 0.1}
 
 HEAD = (
@@ -45,11 +44,6 @@ def desk():
     return scenes
 
 
-def full():
-    """Those of Fig. 1 first."""
-    return sorted(grid(GRAINS, EXPONENTS, [1]), key=lambda scene: scene[1:3] != REFERENCE)
-
-
 def own():
     """At 50.1 m/s offsets about the edge of merging first, pair by pair, then the others; at 63.1 m/s those without
     drag first (v_fra is 50 to 60 m/s in the paper)."""
@@ -72,10 +66,11 @@ def rows(scenes, folder, **others):
 
 def tables():
     """{size: (rows, head)}."""
+    full = sorted(grid(GRAINS, EXPONENTS, [1]), key=lambda scene: scene[1:3] != REFERENCE)  # those of Fig. 1 first
     which = "Smaller aggregates, and six collisions of the paper's size."
     followed = "The paper's size at 50.1 and 63.1 m/s, to its last time."
     return {
         "desk": (rows(desk(), "runs/viscous"), HEAD.format(which)),
-        "full": (rows(full(), "runs/viscous-full"), HEAD.format("All of the paper's.")),
+        "full": (rows(full, "runs/viscous-full"), HEAD.format("All of the paper's.")),
         "own": (rows(own(), "runs/viscous-own", **FOLLOWED), HEAD.format(followed)),
     }

@@ -3,16 +3,48 @@
 Defaults, types, checks and the help text follow from the fields; each is made by parameter().
 """
 
+import ast
 import inspect
+import math
+import operator
+import os
+import sys
 import typing
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
+from itertools import chain
 from textwrap import fill
 from typing import Any, Callable
 
-from analysis.printable import suggested
-from yade_scripts.parameters.arithmetic import NotANumber, evaluate
-from yade_scripts.parameters.errors import InputError
+from analysis.printable import printable, suggested
+
+
+class InputError(Exception):
+    """Input that can't be used; the message is one line: what, where, what it must be."""
+
+
+@contextmanager
+def one_line_errors(script):
+    """Within it wrong input, or a plugin that isn't built, ends the script with one line on stderr and status 2."""
+    try:
+        yield
+    except (InputError, ImportError, MemoryError, OSError) as error:
+        tell(one_line(error), script)
+        sys.exit(2)
+
+
+def one_line(error):
+    """The message of an exception, on one line."""
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror}"
+    return " ".join(str(error).split()) or type(error).__name__
+
+
+def tell(text, script=None):
+    """One line on stderr that begins with the name of the script (this process's); nothing when it can't be written."""
+    with suppress(OSError):
+        print(printable(f"{script or os.path.basename(sys.argv[0])}: {text}"), file=sys.stderr, flush=True)
 
 
 class ParameterError(InputError, ValueError):
@@ -23,9 +55,8 @@ class UnknownParameter(ParameterError):
     """A name that no parameter has."""
 
     def __init__(self, name, names):
-        super().__init__(
-            f"{_short(name)}: unknown parameter{suggested(name, names, '; must be one that --help lists')}"
-        )
+        hint = suggested(name, names, "; must be one that --help lists")
+        super().__init__(f"{_short(name)}: unknown parameter{hint}")
 
 
 @dataclass(frozen=True)
@@ -39,13 +70,11 @@ class Check:
 POSITIVE = Check("> 0", lambda x: x > 0)
 NOT_NEGATIVE = Check(">= 0", lambda x: x >= 0)
 SWITCH = Check("0 or 1", lambda x: x in (0, 1))
-MEANT = 1e9  # times that a value may lie outside of what is usual, if it is meant
 
 
 @dataclass(frozen=True)
 class Usual:
-    """The range of a quantity in nature and in laboratories (SI), and its source: what lies outside was probably given
-    in another unit."""
+    """The range of a quantity in nature and laboratories (SI); beyond, it was probably given in another unit."""
 
     low: float
     high: float
@@ -83,16 +112,12 @@ class Column:
             raise ParameterError(f"{self.name} = {_short(text)}: {self.must}")
         return value
 
-    def require_usual(self, value, meant):
-        """Raise ParameterError where a number other than 0 lies outside of the usual range; with unusual=1 only where
-        constants derived from it would not be numbers."""
-        if not self.usual or not value:
-            return
-        factor = MEANT if meant else 1.0
-        low, high = self.usual.low / factor, self.usual.high * factor
-        if not low <= value <= high:
-            why = "also with unusual=1" if meant else f"({self.usual.source}), or unusual=1 be given if it is meant"
-            raise ParameterError(f"{self.name} = {value:g} {self.unit}: must be {low:g} to {high:g} {self.unit} {why}")
+    def require_usual(self, value):
+        """Raise ParameterError where a number other than 0 lies outside of the usual range."""
+        usual = self.usual
+        if usual and value and not usual.low <= value <= usual.high:
+            must = f"must be {usual.low:g} to {usual.high:g} {self.unit} ({usual.source})"
+            raise ParameterError(f"{self.name} = {value:g} {self.unit}: {must}, or unusual=1 be given if it is meant")
 
     @property
     def must(self):
@@ -138,8 +163,8 @@ class Parameters:
             if name not in columns:
                 raise UnknownParameter(name, columns)
             values[name] = columns[name].value(text)
-        for name, value in values.items():
-            columns[name].require_usual(value, values.get("unusual"))
+        for name in () if values.get("unusual") else values:
+            columns[name].require_usual(values[name])
         return cls(**values).filled_in()
 
     @classmethod
@@ -153,12 +178,12 @@ class Parameters:
                 lines += [columns.pop(name).help() for name in own]
         return "\n".join(lines)
 
-    # (parameter, another one, those of its values with which the first has an effect)
+    # (parameter, another one, those of its values with which the first has an effect), of a class and of its bases
     ONLY_WITH = ()
 
     def filled_in(self):
         """The same with what follows from the parameters alone; raises ParameterError where they contradict."""
-        for name, other, values in self.ONLY_WITH:
+        for name, other, values in chain(*(vars(owner).get("ONLY_WITH", ()) for owner in type(self).__mro__)):
             value, found = getattr(self, name), getattr(self, other)
             if value != self.columns()[name].default and found not in values:
                 value, found = (x if isinstance(x, str) else f"{x:g}" for x in (value, found))
@@ -193,3 +218,48 @@ def _unquoted(text):
 def _short(text, longest=60):
     text = " ".join(str(text).split())
     return text if len(text) <= longest else text[:longest] + "..."
+
+
+# ---- numbers written as arithmetic, such as 10**0.5 or 2*pi/3: this grammar, and nothing else ----
+
+LARGEST_EXPONENT = 1000
+CONSTANTS = {"pi": math.pi, "e": math.e}
+FUNCTIONS = {name: getattr(math, name) for name in ("sqrt", "exp", "log", "log10", "sin", "cos", "tan")}
+OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+SIGNS = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+
+
+class NotANumber(ValueError):
+    """A text that is no arithmetic."""
+
+
+def evaluate(text):
+    """The finite number (int or float) that a text stands for; raises NotANumber. Whole numbers stay whole under + - *
+    and ** with a positive exponent."""
+    try:
+        number = _number(ast.parse(text.strip(), mode="eval").body)
+        if math.isfinite(number):
+            return number
+    except (SyntaxError, ValueError, TypeError, ArithmeticError, MemoryError, RecursionError):
+        pass
+    raise NotANumber("not a finite number")
+
+
+def _number(node):
+    match node:
+        case ast.Constant(value=value) if type(value) in (int, float):
+            return value
+        case ast.Name(id=name) if name in CONSTANTS:
+            return CONSTANTS[name]
+        case ast.UnaryOp(op=sign, operand=operand) if type(sign) in SIGNS:
+            return SIGNS[type(sign)](_number(operand))
+        case ast.BinOp(left=left, op=ast.Pow(), right=right):
+            base, exponent = _number(left), _number(right)
+            if abs(exponent) > LARGEST_EXPONENT:  # 9**9**9 would take long
+                raise NotANumber
+            return base**exponent  # complex for a root of a negative number: math.isfinite refuses it
+        case ast.BinOp(left=left, op=operation, right=right) if type(operation) in OPERATORS:
+            return OPERATORS[type(operation)](_number(left), _number(right))
+        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
+            return FUNCTIONS[name](_number(argument))
+    raise NotANumber
