@@ -248,7 +248,7 @@ def _with_size(parameters, pair):
 
 
 def _sizes(aggregate_radius, pair, parameters):
-    """What run.json tells of the aggregates, with packing = file also what their files say of how they were made."""
+    """Entries of run.json about the aggregates, with packing = file also how they were made."""
     found = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": pair[0].grains}
     names = ("projectile",) if parameters.target == WALL else ("target", "projectile")
     for name, packing in zip(names, pair):

@@ -175,7 +175,7 @@ def _close_packed(scene, index):
 
 
 def _compressed(scene, index):
-    """A sphere out of the state with the nearest filling, of which KEPT of the grains hang together."""
+    """A sphere out of the state with the nearest filling, where KEPT of the grains hang together."""
     fillings = _fillings(f"{CELLS}/s{scene.cell}/states", scene.cells)
     file = list(fillings)[round(np.interp(scene.filling, list(fillings.values()), range(len(fillings))))]
     state = read_periodic_state(file)
