@@ -95,6 +95,7 @@ class OutcomeTable:
         places = np.stack([axis.position(value) for axis, value in zip(self.axes, given)], axis=-1)
         values = self.values[..., [self.columns.index(name) for name in wanted]]
         found = RegularGridInterpolator([np.arange(n) for n in values.shape[:-1]], values)(places)
+        found = found.reshape((*places.shape[:-1], len(wanted)))  # of single numbers: not an array of one
         inside = found[..., wanted.index(INSIDE)]
         inside[np.any([axis.beyond(value) != 0 for axis, value in zip(self.axes, given)], axis=0)] = 0.0
         inside[inside > 1.0 - ROUNDING] = 1.0
