@@ -69,11 +69,6 @@ def of_structure(table, structure):
     return table[table.structure.isin(STRUCTURES[structure])]
 
 
-def touching(table):
-    """Rows whose aggregates touched."""
-    return table[table.outcome != NEVER_MET]
-
-
 def decided(table):
     """Rows to which a model may be fitted, or by which it is judged: the aggregates touched, the outcome is decided."""
     return table[~table.outcome.isin([NEVER_MET, UNDECIDED])]

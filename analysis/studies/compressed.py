@@ -7,11 +7,10 @@ from functools import partial
 import numpy as np
 
 from ..measures.compression import first_compression, largest_return_speed
-from ..measures.outcome import STICKING
 from ..measures.structure import mean_coordination
 from ..runs.collect import Scene
 from ..runs.files import RunFolderError
-from ..runs.format import CHANNELS, HISTORY_FILE, LABELS, LOST_CHANNELS
+from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.ledger import fractions_at, initial_kinetic_energy
 from ..runs.measured import met
 from ..theory import ICE
@@ -20,7 +19,7 @@ from ..theory.andrews import stress_if_rigid
 from . import columns
 from .columns import CLOSURE, OUTCOME, Column, NotMeasured, grains_text, group, one
 from .comparison import Row
-from .estimates import beside, ending, estimate, mean
+from .estimates import beside, estimate, mean
 from .figures import curves
 from .study import Study
 
@@ -131,14 +130,13 @@ MEASURED = (
 
 
 def prepared(runs):
-    """The table with the kind of aggregates, lengths in grain radii, and what is lost until d_max [% of K(0)]."""
+    """The table with the kind of aggregates, and lengths in grain radii."""
     return runs.assign(
         kind=np.where(runs.compressed == 1, *KINDS),
         of=[grains_text(row) for row in runs.to_dict("records")],
         radius=(runs.radius / runs.grainRadius).round(6),
         step=runs.step.round(9),
         depth=runs.compression / runs.grainRadius,
-        lost=100 * runs[[AT_MAXIMUM.format(channel) for channel in LOST_CHANNELS]].sum(axis=1),
     )
 
 
@@ -167,15 +165,10 @@ def rows(runs):
             if of == "ice":
                 yield Row(f"yield stress over A24's static one, {what}", estimate(over_static, each))
             yield Row(f"compression from the first touch to d_max, {what} [r]", estimate(mean("depth"), each))
-            yield Row(f"its time, {what} [ns]", estimate(mean(lambda r: r.t_max * 1e9), each))
             yield Row(f"contacts of a grain, {what}", estimate(mean("coordination"), each))
-            yield Row(f"lost until d_max, {what} [% of K(0)]", estimate(mean("lost"), each))
             for way in ("sliding", "rolling", "twisting"):
                 lost = mean(lambda r: 100 * r[AT_MAXIMUM.format(f"{way}Dissipation")])
                 yield Row(f"lost by {way} until d_max, {what} [% of K(0)]", estimate(lost, each))
-            returned = mean(lambda r: 100 * (r.return_speed / r.velocity) ** 2)
-            yield Row(f"returned when the halves part fastest, {what} [% of K(0)]", estimate(returned, each))
-            yield Row(f"sticking, {what}", ending(each, STICKING))
 
 
 def figures(runs):

@@ -244,23 +244,20 @@ def _moduli(plain):
     bulk = bulk_modulus(0.4, cpe_coordination(0.4, *lengths), *lengths, pair.pull_off_force)
     yield Row("K_agg, φ = 0.4 [MPa]", Estimate(bulk / 1e6), (74.25, 74.35), "74.3", "41")
     for filling, (stress, young, papers_offset, _) in PRINTED.items():
-        own, density, what = where(plain, filling=filling), filling * ICE.density, f"φ = {filling}"
+        own, what = where(plain, filling=filling), f"φ = {filling}"
 
         def numbers(r, start):
-            """sigma [MPa], 1/E* [1/GPa], nu, what is returned, 1/E* with A24's delta_offset."""
-            *x, offset = papers_way(r, start)
-            sigma, soft = moduli(x)
-            returned = Aggregates(sigma, soft, offset, density).returned(VELOCITY)
+            """sigma [MPa], 1/E* [1/GPa], nu, 1/E* with A24's delta_offset."""
+            sigma, soft = moduli(papers_way(r, start))
             with_papers = moduli(fit_moduli(r, papers_offset, start))[1]
-            return sigma / 1e6, soft * 1e9, poisson_ratio(1.0 / max(soft, 1e-15), bulk), returned, with_papers * 1e9
+            return sigma / 1e6, soft * 1e9, poisson_ratio(1.0 / max(soft, 1e-15), bulk), with_papers * 1e9
 
         first = papers_way(own)[:2] if len(own) else START  # fits without a pair start at that to all
-        sigma, soft, poisson, returned, with_papers = estimates(lambda r: numbers(r, first), own)
+        sigma, soft, poisson, with_papers = estimates(lambda r: numbers(r, first), own)
         yield A24(f"yield stress σ, {what} [MPa]", sigma, stress / 1e6, f"{stress / 1e6:g}", "34, 35")
         printed_as = f"{1e9 / young:.3g} (E* = {young / 1e6:g} MPa)"
         yield A24(f"1/E*, {what} [1/GPa]", soft, 1e9 / young, printed_as, "34, 35")
         yield Row(f"1/E* with A24's δ_offset, {what} [1/GPa]", with_papers)
-        yield Row(f"returned by Andrews's spheres with our moduli, {what} [K(0)]", returned)
         theirs = Estimate(printed(filling).returned(VELOCITY))
         yield Row(f"returned by Andrews's spheres with A24's moduli, {what} [K(0)]", theirs)
         if filling == 0.4:
@@ -309,9 +306,8 @@ def _new(runs, plain):
         *values, filling, radius, v = key
         words = ", ".join(f"{name} = {value:g}" for name, value in zip(UNCHANGED, values) if value != UNCHANGED[name])
         same, what = where(plain, filling=filling, radius=radius, velocity=v), f"R = {radius:g} r, φ = {filling}"
-        for column, name, unit in (("d", "d_max", "r"), ("t", "t_max", "ns")):
-            change = beside(mean(column), once(own), same)
-            yield Row(f"{name}, {words} less the same pairs without, {what}, {v:.3g} m/s [{unit}]", change)
+        change = beside(mean("d"), once(own), same)
+        yield Row(f"d_max, {words} less the same pairs without, {what}, {v:.3g} m/s [r]", change)
 
 
 def figures(runs):

@@ -159,7 +159,5 @@ def test_both_kinds_from_the_first_touch_on(tmp_path, capsys):
     over = 16 / 3 * 400 * 3.0**2 / (0.1 * deepest.expected) ** 2 / (0.47e6 * (1 / 0.4 - 1 / 0.74) ** -3)
     for kind in ("CPE", "compressed"):
         assert found[f"compression from the first touch to d_max, {kind} [r]"] == deepest
-        assert found[f"its time, {kind} [ns]"] == pytest.approx(99, rel=0.02)
         assert found[f"yield stress over A24's static one, {kind}"] == pytest.approx(over, rel=3e-3)
-        assert found[f"sticking, {kind}"] == pytest.approx(0.8)
     assert found["compression, compressed over CPE"] == pytest.approx(1.0)
