@@ -45,8 +45,7 @@ def add_parsers(commands):
 
 
 def summary(options):
-    from ..report.rows import frame, measure, row, summarise
-    from ..report.text import long_text, short_text
+    from ..report.rows import frame, long_text, measure, row, short_text, summarise
 
     if options.json:
         of_run = summarise
