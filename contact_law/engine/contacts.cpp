@@ -138,12 +138,6 @@ int bondCount(const Dynamics& dynamics)
 	return total;
 }
 
-bool constrained(const Dynamics& dynamics)
-{
-	return std::any_of(
-	        dynamics.parts().begin(), dynamics.parts().end(), [](const auto& domain) { return !domain->constraints.grains.empty(); });
-}
-
 std::vector<OutsideForce> wholeForces(const Dynamics& dynamics)
 {
 	std::vector<OutsideForce> all(dynamics.grainCount());

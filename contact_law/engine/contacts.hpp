@@ -58,7 +58,6 @@ struct NormalForces {
 	std::vector<double> forces, necks;
 };
 NormalForces normalForces(const Dynamics&); // the contacts, then the bonds
-// Grain and plane of each contact.
 NormalForces normalForcesOnPlanes(const Dynamics&);
 
 // visit(domain, contact), of every grain's with a plane
@@ -73,7 +72,6 @@ Vec3<double> pushOn(const Dynamics&, int plane);        // by all grains, throug
 
 int contactCount(const Dynamics&); // between grains, bonds among them
 int bondCount(const Dynamics&);
-bool constrained(const Dynamics&); // whether any grain has a blocked degree of freedom
 // On each grain as given: of contacts, bonds and outside forces, with what blocked degrees of freedom withhold.
 std::vector<OutsideForce> wholeForces(const Dynamics&);
 std::vector<OutsideForce> outsideForces(const Dynamics&); // by rising index of the grain as given
@@ -85,7 +83,6 @@ Booked booked(const Dynamics&);
 // Steps from here on are unstable for some pair that the scene's kinds of grains could make, with or without bonds, in whatever packing
 // [s] (MODEL.md, "Step limits").
 double unstableStep(const Dynamics&);
-// The same for bonds of another neck [s].
 double unstableStepOfBonds(const Dynamics&, double neck);
 // The largest gap between grains that touch, or are bonded [m]: the neighbour lists must hold them so far apart, however small other
 // grains are.

@@ -104,7 +104,6 @@ public:
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
-	// A plane that something else has moved, or given another velocity.
 	void setPlane(int plane, const Vec3<double>& position, const Vec3<double>& velocity);
 	/* All outside forces from now on, by rising grain (those not given have none). Positions and velocities of this moment stay.
 	 * Onset::Now: the force acts from here on. Onset::Before: it has acted until now too, on the grains of another run, whose
@@ -118,7 +117,6 @@ public:
 	 * counts it changes in second order of the steps (changes.cpp). */
 	void setStep(double dt);
 	void setThreads(int threads) { options.threads = threads; }
-	// Goes on booking where another run of these grains ended.
 	void continueFrom(const Booked&);
 	void bookDisconnection(double energy) { domains[0]->ledger.lost.disconnection += energy; } // [J]
 

@@ -360,7 +360,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKR
 	scene->forces.addTorque(grain1, fromKernel(r.torque1));
 	if (!ofPlane) scene->forces.addTorque(other, fromKernel(r.torque2));
 	if (scene->trackEnergy) {
-		channels.prepare(*scene, shapes.planes());
+		channels.prepare(*scene);
 		contact_law::Energies energies;
 		energies.kinetic = r.workBefore;
 		energies.stored = r.stored;

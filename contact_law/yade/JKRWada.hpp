@@ -11,6 +11,7 @@
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/dem/ScGeom.hpp>
+#include <cstring>
 
 namespace yade {
 

@@ -252,14 +252,11 @@ void JKRWadaEngine::bringBodies()
 
 // ---- O.energy ----
 
-void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, Booking booking)
+void JKRWadaEngine::writeEnergies(const contact_law::Energies& now, bool known)
 {
-	const bool known = booking == Booking::AlreadyInOEnergy;
 	if (!booked) channels.takeOver();
 	booked = true;
-	current->workOn.blocked = current->workOn.blocked || contact_law::constrained(current->dynamics) || current->grains.hasPlanes();
-	current->workOn.outside = current->workOn.outside || !current->outside.empty() || now.externalWork != 0;
-	channels.set(*scene, now, known, current->workOn);
+	channels.set(*scene, now, known);
 }
 
 // Whether O.energy has the energies of this run still: a script may have cleared it.
@@ -268,7 +265,7 @@ bool JKRWadaEngine::isInOEnergy() const { return booked && EnergyChannels::areIn
 // O.energy.clear(): sums count from there on.
 void JKRWadaEngine::takeCleared()
 {
-	if (booked && !isInOEnergy()) writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy);
+	if (booked && !isInOEnergy()) writeEnergies(current->dynamics.energies(), true);
 }
 
 // ---- what others read ----

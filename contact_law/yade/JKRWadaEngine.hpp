@@ -57,8 +57,7 @@ class JKRWadaEngine : public GlobalEngine {
 	[[noreturn]] void fail(Real time, const std::string& what, const char* advice = ". A smaller step may help");
 	void writeBodies();
 	void bringBodies();
-	enum class Booking { Add, AlreadyInOEnergy };
-	void writeEnergies(const contact_law::Energies&, Booking = Booking::Add);
+	void writeEnergies(const contact_law::Energies&, bool known = false); // known: O.energy has them already
 
 public:
 	void action() override;

@@ -110,7 +110,6 @@ struct JKRWadaEngine::Run {
 	std::vector<contact_law::GrainMotion> now {};
 	StepWatch watch {};
 	std::vector<contact_law::OutsideForce> outside {}; // by grains, as they are held
-	EnergyChannels::WorkOn workOn {};                  // at any time: the scene then has the channel
 };
 
 } // namespace yade

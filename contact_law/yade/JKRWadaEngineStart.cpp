@@ -128,7 +128,7 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 	const ContactsHolder holder(*scene);
 	if (!continued && holder.onlyInEngine()) refuseInEngine(ContactsHolder::refusal);
 	const bool inherits = again || (!continued && !(inherited.contacts.empty() && inherited.onPlanes.empty()));
-	const bool ofContacts = contacts.ofFunctors() || holder.isWritten() || SceneShapes::functorsActed(*scene);
+	const bool ofContacts = contacts.ofFunctors() || holder.isWritten();
 	if (!continued && !again) SceneForces::dropThoseOfOtherEngines(*scene, grains, ofContacts);
 	SceneCell cell;
 	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps);
@@ -161,8 +161,7 @@ void JKRWadaEngine::start(bool again)
 	if (continued) { // as the bodies were when they were saved: what a script has changed since is a change like any other
 		current->dynamics.read(current->now);
 		current->grains.setWritten(current->now, current->dynamics);
-		if (isInOEnergy())
-			writeEnergies(current->dynamics.energies(), Booking::AlreadyInOEnergy); // it has them from before it was saved
+		if (isInOEnergy()) writeEnergies(current->dynamics.energies(), true); // it has them from before it was saved
 	} else if (!again)
 		booked = false;
 	if (continued || run->onset == Dynamics::Onset::Before)
@@ -198,7 +197,6 @@ void JKRWadaEngine::readAnew()
 	start(true);
 	before->forces.withdraw(*scene);
 	current->dynamics.continueFrom(contact_law::booked(before->dynamics));
-	current->workOn = before->workOn;
 	for (contact_law::OutsideForce force : before->outside) {
 		force.grain = current->grains.grainOf(before->grains.idOf(force.grain));
 		current->outside.push_back(force);

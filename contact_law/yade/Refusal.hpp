@@ -25,7 +25,6 @@ inline std::string text(int number) { return std::to_string(number); }
 inline std::string text(bool is) { return is ? "True" : "False"; }
 inline std::string text(const std::string& string) { return "'" + string + "'"; }
 
-// Of what was computed.
 inline std::string rounded(double number, int digits = 4)
 {
 	char buffer[32];

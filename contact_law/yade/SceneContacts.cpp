@@ -55,40 +55,36 @@ namespace {
 		return c;
 	}
 
-	// Bodies in the order of c's grains; the normal is YADE's, from body 1 to body 2.
+	/* Bodies in the order of c's grains; the normal is YADE's, from body 1 to body 2. Of a contact with a Wall, this is the first body, and
+	 * all is as Ig2_Wall_Sphere_ScGeom and the functors leave it. */
 	void writeContact(const Scene& scene, const ContactNow& c, Interaction& interaction)
 	{
-		const State &state1 = stateOf(scene, interaction.getId1()), &state2 = stateOf(scene, interaction.getId2());
+		const int id1 = interaction.getId1(), id2 = interaction.getId2();
+		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
 		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
 		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
+		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity), c.onPlane);
+		geometry.refR2 = radiusOf(scene, id2); // of the bodies, shrunk by sintering or not
+		if (c.onPlane) {
+			const int axis = wallOf(scene, id1)->axis;
+			geometry.normal = fromKernel(c.geometry.normal);
+			geometry.refR1 = geometry.refR2;
+			geometry.penetrationDepth = c.geometry.overlap;
+			geometry.contactPoint = state2.pos;
+			geometry.contactPoint[axis] = state1.pos[axis];
+			phys.pointer1 = fromKernel(c.point);
+			phys.pointer2 = state2.ori.conjugate() * fromKernel(c.history.pointers.n1);
+			return;
+		}
 		interaction.cellDist = Vector3i(-int(c.shift.x), -int(c.shift.y), -int(c.shift.z)); // of body 2, not body 1
 		geometry.normal = -fromKernel(c.geometry.normal);
-		geometry.refR1 = radiusOf(scene, interaction.getId1()); // of the bodies, shrunk by sintering or not
-		geometry.refR2 = radiusOf(scene, interaction.getId2());
+		geometry.refR1 = radiusOf(scene, id1);
 		geometry.penetrationDepth = c.geometry.overlap
 		        + (geometry.refR1 + geometry.refR2 - (c.bonded ? c.rest : c.constants.radius1 + c.constants.radius2));
 		geometry.contactPoint = state1.pos + (geometry.refR1 - 0.5 * geometry.penetrationDepth) * geometry.normal;
-		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity));
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(c.history.pointers.n1);
 		phys.pointer2 = state2.ori.conjugate() * fromKernel(c.history.pointers.n2);
 		phys.restDistance = c.rest;
-	}
-
-	// As Ig2_Wall_Sphere_ScGeom and the functors leave it: the Wall is the first body.
-	void writeContactOnPlane(const Scene& scene, const ContactNow& c, Interaction& interaction)
-	{
-		const State &wall = stateOf(scene, interaction.getId1()), &grain = stateOf(scene, interaction.getId2());
-		const int axis = wallOf(scene, interaction.getId1())->axis;
-		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
-		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
-		geometry.normal = fromKernel(c.geometry.normal);
-		geometry.refR1 = geometry.refR2 = radiusOf(scene, interaction.getId2());
-		geometry.penetrationDepth = c.geometry.overlap;
-		geometry.contactPoint = grain.pos;
-		geometry.contactPoint[axis] = wall.pos[axis];
-		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity), true);
-		phys.pointer1 = fromKernel(c.point);
-		phys.pointer2 = grain.ori.conjugate() * fromKernel(c.history.pointers.n1);
 	}
 
 	bool isOfKind(const JKRWadaPhys& phys, const ContactNow& c)
@@ -176,7 +172,7 @@ void SceneContacts::write(Scene& scene, const contact_law::Dynamics& dynamics, c
 		auto& phys = static_cast<JKRWadaPhys&>(*held[k]->phys);
 		phys.springs = int(dynamics.state().mechanisms);
 		phys.current = true;
-		written[k]->onPlane ? writeContactOnPlane(scene, *written[k], *held[k]) : writeContact(scene, *written[k], *held[k]);
+		writeContact(scene, *written[k], *held[k]);
 	}
 }
 

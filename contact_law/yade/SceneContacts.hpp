@@ -28,7 +28,6 @@ public:
 
 	bool is(const std::string& name) const { return has(std::string(key) + name) || has(std::string(key) + name + also); }
 	bool isAny() const { return std::any_of(scene.tags.begin(), scene.tags.end(), isHolder); }
-	// Whether O.interactions lacks the contacts.
 	bool onlyInEngine() const { return isAny() && !isWritten(); }
 	bool isWritten() const
 	{

@@ -26,7 +26,6 @@ public:
 	// The bodies get these motions, whose place the ones written before take. Orientations only where they are followed.
 	void write(std::vector<contact_law::GrainMotion>& now, bool orientations, int threads);
 	void writePlanes(const contact_law::Dynamics&);
-	// What the grains do to the planes: to O.forces.
 	void pushPlanes(Scene&, const contact_law::Dynamics&) const;
 	// As if the bodies had been given these motions, and the planes' places of a run.
 	void setWritten(const std::vector<contact_law::GrainMotion>&, const contact_law::Dynamics&);

@@ -9,7 +9,6 @@
 namespace yade {
 
 namespace {
-	// What is wrong with a plane, or empty.
 	std::string faultOf(const Wall& wall, const State& state, const Scene& scene, InPeriodic inPeriodic)
 	{
 		if (wall.sense != 0) return "sense = " + text(wall.sense) + ", must be 0: planes hold grains on both sides";
@@ -23,15 +22,13 @@ namespace {
 		return "";
 	}
 
-	// What is wrong with the scene for the functors, or empty.
-	std::string faultOf(const Scene& scene, bool& anyPlane)
+	// Of the scene, for the functors.
+	std::string faultOf(const Scene& scene)
 	{
-		anyPlane = false;
 		for (const auto& body : *scene.bodies) {
 			if (!body || !dynamic_cast<const JKRMat*>(body->material.get())) continue;
 			const std::string fault = yade::faultOf(*body, scene, InPeriodic::Refused);
 			if (!fault.empty()) return fault;
-			anyPlane = anyPlane || wallOf(*body);
 		}
 		return "";
 	}
@@ -78,14 +75,11 @@ void refuseInStep(Scene& scene, const std::string& what)
 	std::thread([] { PyGILState_Release(PyGILState_Ensure()); }).detach();
 }
 
-OncePerStep SceneShapes::anyLook;
-
 bool SceneShapes::fit(Scene& scene)
 {
 	look(scene, [&] {
-		anyLook(scene, [] {});
 		ContactsHolder holder(scene);
-		const std::string fault = holder.onlyInEngine() ? ContactsHolder::refusal : faultOf(scene, anyPlane);
+		const std::string fault = holder.onlyInEngine() ? ContactsHolder::refusal : faultOf(scene);
 		fine = fault.empty();
 		if (!fine)
 			refuseInStep(scene, "Law2_ScGeom_JKRWadaPhys_JKRWada: " + fault);

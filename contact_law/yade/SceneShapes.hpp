@@ -24,8 +24,6 @@ public:
 		action();
 		iteration = scene.iter;
 	}
-	// Whether the latest step of this scene had it done.
-	bool wasDone(const Scene& scene) const { return known == scene.energy.get() && iteration == scene.iter - 1; }
 
 private:
 	static constexpr long none = -2;
@@ -56,15 +54,10 @@ class SceneShapes {
 public:
 	// Whether the law can hold between all bodies of JKRMat; refuses the scene in this step if not. From any thread; looks once a step.
 	bool fit(Scene&);
-	bool planes() const { return anyPlane; }
-	// Whether any functor had contacts in the latest step of this scene: what O.forces has is theirs, though the contacts may have
-	// ended.
-	static bool functorsActed(const Scene& scene) { return anyLook.wasDone(scene); }
 
 private:
 	OncePerStep look;
-	static OncePerStep anyLook;
-	bool fine = true, anyPlane = false;
+	bool fine = true;
 };
 
 } // namespace yade

@@ -11,7 +11,6 @@ class Bound;
 class Interaction;
 class State;
 
-// Material properties, shared by bodies.
 class Material : public Serializable, public Indexable {
 public:
 	~Material() override;
@@ -26,7 +25,6 @@ public:
 	Real density = 1000;
 };
 
-// What a body looks like to colliders and geometry functors.
 class Shape : public Serializable, public Indexable {
 public:
 	~Shape() override;
@@ -45,7 +43,6 @@ protected:
 	Shape(); // made by YADE only
 };
 
-// Where a body is and how it moves.
 class State : public Serializable, public Indexable {
 public:
 	enum { DOF_ALL = 63 };

@@ -27,7 +27,6 @@ public:
 	string label;
 };
 
-// An engine that acts on the whole scene.
 class GlobalEngine : public Engine {
 public:
 	GlobalEngine() {} // not exported

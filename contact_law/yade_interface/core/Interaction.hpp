@@ -8,7 +8,6 @@ class IGeomFunctor;
 class IPhysFunctor;
 class LawFunctor;
 
-// Geometry of a contact.
 class IGeom : public Serializable, public Indexable {
 public:
 	IGeom() {}
@@ -17,7 +16,6 @@ public:
 	REGISTER_INDEX_COUNTER(IGeom);
 };
 
-// Physics of a contact.
 class IPhys : public Serializable, public Indexable {
 public:
 	IPhys() {}

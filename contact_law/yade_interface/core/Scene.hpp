@@ -44,7 +44,6 @@ private:
 	pthread_mutex_t drawloopmutex;
 };
 
-// All interactions, real and potential.
 class InteractionContainer : public Serializable {
 public:
 	using ContainerT = std::vector<shared_ptr<Interaction>>;
