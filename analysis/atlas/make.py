@@ -50,40 +50,28 @@ VELOCITIES = np.append(np.geomspace(1e-6, 0.08, 11)[:-1], np.geomspace(0.08, 26.
 BEYOND_SIZES = np.array([1, 8, *SIZES, *(8.0 ** np.arange(5, 9))])
 BEYOND_RATIOS = np.append(64.0 ** np.arange(-4, -1), RATIOS)
 
-NO_SKLEARN = "scikit-learn is missing: must be installed (python3-sklearn, or pip install dust-analysis[atlas])"
-
 ABOUT = """Outcomes of collisions of two dust aggregates: the collision atlas.
-Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff \
-of the repository.
+Made by the contact-law suite, version {version}, from {runs} runs; licence: GPL-2.0-or-later. To cite: CITATION.cff.
 Of {structure}.
-Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of \
-the larger aggregate,
-mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of \
-both).
-Columns: p_...: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the \
-aggregates touch,
-{impact} and averaged over orientations; error_...: their 90 % half widths,
-by the decided runs, and by what undecided ones may become; p_touching: of pairs with b < 1, those that touch; \
-largest, second: mass of the
-two largest pieces over the total; fragment_index: n of dN/dm ~ m^-n of all pieces but the largest; filling_after: of \
-the largest piece;
-where that is the outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its \
-own at most) over the smaller one's,
-largest_fragmentation: the largest piece over the larger aggregate; _low, _high: ends of the intervals that hold 90 % \
-of such collisions, for the largest piece of those that leave more than one; inside: 1 within the convex hull of \
-the runs
-in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0 farther \
-beyond, where values are those of the
-nearest node within; runs: number of runs within {near:g} of the scatter. Between nodes: multilinear in \
-the scaled coordinates (pieces better as
-second (1 + mass_ratio)/mass_ratio and c = largest (1 + mass_ratio) - 1, where that is above 0 c/mass_ratio); the \
-last axis is the fastest.
-Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a \
-chance of {most:.2g} there at most (95 %).
-Slower ones than any run are inside where they would be with that energy; below {contact:.2g} E_break, what making \
-and breaking one contact
-dissipates, all runs stuck, and sticking is taken to hold at any size within the axes (error 0; filling_after is then \
-a guess where runs is 0).
+Axes: velocity over v_break = (E_break/m0)^(1/2) of the grains (ice of 0.1 um: {ice:.4g} m/s), number of grains of the
+larger aggregate, mass of the smaller over the larger, filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by
+mass of both).
+Columns: p_...: probabilities of the outcomes, sum 1 (rules: analysis/atlas/rules.py), of collisions in which the
+aggregates touch, {impact} and averaged over
+orientations; error_...: their 90 % half widths, by the decided runs, and by what undecided ones may become;
+p_touching: of pairs with b < 1, those that touch; largest, second: mass of the two largest pieces over the total;
+fragment_index: n of dN/dm ~ m^-n of all pieces but the largest; filling_after: of the largest piece; where that is the
+outcome, gain_mass_transfer, loss_erosion: mass that the larger aggregate gains, loses (half its own at most) over the
+smaller one's, largest_fragmentation: the largest piece over the larger aggregate; _low, _high: ends of the intervals
+that hold 90 % of such collisions, for the largest piece of those that leave more than one; inside: 1 within the convex
+hull of the runs in ln velocity, ln grains, ln mass_ratio and filling, or {margin:g} of their scatter beyond at most; 0
+farther beyond, where values are those of the nearest node within; runs: number of runs within {near:g} of the scatter.
+Between nodes: multilinear in the scaled coordinates (pieces better as second (1 + mass_ratio)/mass_ratio and
+c = largest (1 + mass_ratio) - 1, where that is above 0 c/mass_ratio); the last axis is the fastest.
+Slow collisions: all {sure} fitted runs with a kinetic energy below {energy:.3g} E_break stuck; anything else has a
+chance of {most:.2g} there at most (95 %). Slower ones than any run are inside where they would be with that energy;
+below {contact:.2g} E_break, what making and breaking one contact dissipates, all runs stuck, and sticking is taken to
+hold at any size within the axes (error 0; filling_after is then a guess where runs is 0).
 Not in it: spins before the collision, sintering, drag, charges, grains of unlike size."""
 
 OF_STRUCTURE = {
@@ -162,15 +150,10 @@ def main(folder=FOLDER):
                 file = Path(folder) / outcomes_file(structure, averaged).name
                 write_outcomes(file, outcome_grid(model, structure, averaged, version()))
                 print(file)
-    except OSError as error:
-        complain(f"{error.filename or folder}: {error.strerror}")
-    except ModuleNotFoundError:
-        complain(NO_SKLEARN)
-    except (TableError, ValueError) as error:
+    except (OSError, ModuleNotFoundError, TableError, ValueError) as error:
         complain(error)
-    else:
-        return 0
-    return FAILED
+        return FAILED
+    return 0
 
 
 if __name__ == "__main__":

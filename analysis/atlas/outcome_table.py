@@ -24,7 +24,6 @@ COLUMNS = (*PROBABILITIES, *ERRORS, TOUCHING, *LEFT, *OF_KIND, INSIDE, "runs")
 SCALES = {"log10": np.log10, "linear": np.asarray}
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
-_SUM = '# {"sha256"'  # how files of versions 0.5 to 0.6 begin
 
 
 class OutcomeTableError(ValueError):
@@ -149,7 +148,7 @@ def read_outcomes(path):
         advice = "must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
         raise OutcomeTableError(f"{path}: {error.strerror}; {advice}") from None
     lines = text.split("\n")
-    comments = tuple(line[1:].strip() for line in lines if line.startswith("#") and not line.startswith(_SUM))
+    comments = tuple(line[1:].strip() for line in lines if line.startswith("#"))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
         axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))

@@ -129,22 +129,12 @@ def filling_at_pressure(history, pressure, width):
     NaN where it never does, or always did.
     """
     fillings, pressures = pressure_over(history, width)
-    k = _last_below(pressures < pressure)
-    if k is None:
+    below = np.flatnonzero(pressures < pressure)
+    if not len(below) or below[-1] + 1 == len(pressures):
         return float("nan")
+    k = below[-1]
     logarithms = np.log(np.maximum(pressures[k : k + 2], 1e-3 * pressure))
     return float(np.exp(np.interp(np.log(pressure), logarithms, np.log(fillings[k : k + 2]))))
-
-
-def filling_at_share(history, one, other, share):
-    """The filling factor from which on, to the end, the series `one` is at least `share` of the series `other`.
-
-    Both are counted from the start; NaN where it never is, or always was.
-    """
-    part = compressing(history)
-    grown, reference = (history[name][part] - history[name][0] for name in (one, other))
-    k = _last_below(grown < share * reference)
-    return float("nan") if k is None else float(history["filling"][part][k + 1])
 
 
 def _work_over_volume(history, part, width):
@@ -154,9 +144,3 @@ def _work_over_volume(history, part, width):
     edges = [(a, min(b, len(time) - 1)) for a, b in windows(time, width) if a < len(time) - 1]
     pressures = [(work[b] - work[a]) / (size[b] - size[a]) for a, b in edges]
     return np.array([filling[a : b + 1].mean() for a, b in edges]), np.array(pressures)
-
-
-def _last_below(below):
-    """Place of the last True of below (T,); None if none is, or if it is the last of all."""
-    places = np.flatnonzero(below)
-    return int(places[-1]) if len(places) and places[-1] + 1 < len(below) else None

@@ -33,7 +33,6 @@ class Column:
     meaning: str
     kind: str = "f"  # numpy's letter of the type: "f", "i", "b", "O" for words
     gaps: bool = False  # whether it may have no value in places
-    absent: float | None = None  # its value in tables that lack it; None: they cannot be read
 
 
 class TableError(Exception):
@@ -75,7 +74,6 @@ def read_table(file, columns):
         head = json.loads(comments[0][2:]) if comments else None
         if not isinstance(head, dict):
             raise ValueError("its first line is not '# ' with a JSON object")
-        head.pop("sha256", None)  # of versions 0.5 to 0.6, which put the text's sum there
         names = next(csv.reader(body), [])
         for name in names:
             if names.count(name) > 1:
@@ -86,15 +84,12 @@ def read_table(file, columns):
         raise TableError(str(error)) from None
     except (ValueError, RecursionError) as error:  # pandas's and json's errors are ValueErrors too
         raise TableError(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
-    lacking = [c.name for c in columns if c.name not in table and c.absent is None]
-    if RUN not in table or lacking:
-        raise TableError(f"{file}: lacks the column " + ", ".join(lacking or [RUN]))
-    absent = {c.name: c.absent for c in columns if c.name not in table} | {FOLDER: None}
-    # .copy(): pandas 3 warns of a table that is made of many pieces.
-    table = pandas.concat([table, pandas.DataFrame(absent, index=table.index)], axis=1).copy()
+    lacking = [name for name in (RUN, *(column.name for column in columns)) if name not in table]
+    if lacking:
+        raise TableError(f"{file}: lacks the column {', '.join(lacking)}")
     for column in columns:
         _check(file, column, table[column.name])
-    return table, head
+    return table.assign(**{FOLDER: None}), head
 
 
 def _check(file, column, values):

@@ -54,16 +54,14 @@ def _return(run, row):
 
 
 def _changes(run, row):
-    """Changes of all channels until the largest speed of return (NaN: unknown), until the largest compression, and
-    until the end, over K(0)."""
-    times = row["return_time"], largest_compression(run)[0].time, run.history["time"][-1]
-    parts = [fractions_at(run.history, time) if np.isfinite(time) else {} for time in times]
-    return [part.get(channel, np.nan) for part in parts for channel in CHANNELS]
+    """Changes of all channels until the largest compression, and until the end, over K(0)."""
+    times = largest_compression(run)[0].time, run.history["time"][-1]
+    return [part for time in times for part in fractions_at(run.history, time).values()]
 
 
-def _channels_until(name, when, **more):
+def _channels_until(name, when):
     meaning = "{}, change from the start to {} (kinetic: what is left)"
-    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when), **more) for c in CHANNELS)
+    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when)) for c in CHANNELS)
 
 
 _contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
@@ -73,15 +71,10 @@ COMPACT = (  # without gaps last, so that a row that was cut short is noticed
     OUTCOME,
     group(
         _return,
-        Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True, absent=np.nan),
-        Column("return_time", "s", "its time", gaps=True, absent=np.nan),
+        Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True),
+        Column("return_time", "s", "its time", gaps=True),
     ),
-    group(
-        _changes,
-        *_channels_until("{}_at_return", "return_time", gaps=True, absent=np.nan),
-        *_channels_until(AT_MAXIMUM, "t_max", absent=0.0),
-        *_channels_until("{}_at_end", "the end", absent=0.0),
-    ),
+    group(_changes, *_channels_until(AT_MAXIMUM, "t_max"), *_channels_until("{}_at_end", "the end")),
 )
 
 # ---- what is this study's own ----

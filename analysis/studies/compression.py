@@ -13,7 +13,6 @@ from ..runs.collect import Scene
 from ..runs.format import COMPRESSION, LOST_CHANNELS
 from ..runs.ledger import work_closure
 from ..theory import compression as theory
-from ..theory.aggregates import bcca_coordination
 from .columns import GRAINS, MATERIAL, OF_GRAINS, Column, NotMeasured, constant, grains_text, group, parameter
 from .comparison import Row
 from .estimates import beside, estimate, exponent, mean, where
@@ -29,11 +28,9 @@ FILLINGS = np.concatenate([LOOSE, DENSE])
 # A bin is from its filling factor over this to that times this.
 HALF_BINS = np.concatenate([np.full(len(LOOSE), 10.0 ** (1.0 / 16.0)), np.full(len(DENSE), 1.02)])
 ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.4, 0.5, 0.6)
-# Columns of values at filling factors, or at shares of the rolling dissipation: {place: name}.
+# Columns of values at filling factors: {place: name}.
 PRESSURES = {filling: f"P_{filling:.4f}" for filling in FILLINGS}
-COORDINATIONS = {filling: f"Z_{filling:.4f}" for filling in FILLINGS}
 ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
-TWISTING = {share: f"twisting_{share:g}" for share in (0.001, 0.1)}
 DIMENSIONS = {filling: f"D_{filling:g}" for filling in (0.003, 0.01, 0.03, 0.1)}  # K13 Fig. 11
 VALID_TO = 0.1  # the filling factor up to which K13 eq 25 holds
 ROUNDING = 1.0 + 1e-9
@@ -52,14 +49,6 @@ def pressure_at(history):
     between, pressure = cells.pressures(history)
     ratio = pressure / theory.compressive_strength_dense(between, 1.0)
     return theory.compressive_strength_dense(FILLINGS, 1.0) * _binned(history, between, ratio)
-
-
-def coordination_at(history):
-    """Coordination number (K,) at FILLINGS: as pressure_at(), by the difference from A24 eq 45."""
-    part = cells.compressing(history)
-    filling = history["filling"][part]
-    away = history["coordination"][part] - bcca_coordination(filling)
-    return bcca_coordination(FILLINGS) + _binned(history, filling, away)
 
 
 def _binned(history, places, values):
@@ -157,19 +146,8 @@ MEASURED = (
     ),
     group(_pressures, *_at_places(PRESSURES, "Pa", "pressure at the filling {:.4f}, by the work")),
     group(
-        lambda run, row: coordination_at(run.history),
-        *_at_places(COORDINATIONS, "", "coordination number at the filling {:.4f}"),
-    ),
-    group(
         lambda run, row: [cells.at_filling(run.history, *of) for of in ENERGIES],
         *_at_places(ENERGIES, "J", "{0[0]} until the filling {0[1]:g}"),
-    ),
-    group(
-        lambda run, row: [
-            cells.filling_at_share(run.history, "twistingDissipation", "rollingDissipation", share)
-            for share in TWISTING
-        ],
-        *_at_places(TWISTING, "", "filling where twisting passes {:g} of rolling"),
     ),
     group(
         lambda run, row: [_dimension(run, filling) for filling in DIMENSIONS],

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from ..figures.style import PAPER
 from ..measures.outcome import STICKING, UNDECIDED
-from ..measures.structure import DEPTH, inner_coordination, zone_filling
+from ..measures.structure import DEPTH, zone_filling
 from ..runs.collect import Scene
 from ..theory import ICE, andrews, pair_constants
 from ..theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
@@ -22,7 +22,6 @@ from .figures import curves, snapshots
 from .study import GALLERY, Study
 
 VELOCITY = 10**0.5  # m/s, at which A24 compares sizes; printed as 3.2 m/s
-SKIN = 2.0  # grain radii below the sphere that holds all centres: deeper grains have all neighbours' sites in it
 ZONES = f"grains per volume in the two zones that meet, {DEPTH:g} R deep and wide, over that of the aggregates"
 # What a run may have changed, and what A24 has: drag, grains outside the largest piece, overlap at the start.
 UNCHANGED = {"viscoelasticTime": 0.0, "removeLooseGrains": 0.0, "initialOverlap": 1.0}
@@ -38,19 +37,16 @@ def _compression(run, row):
     return offset, maximum.length, maximum.length_error, exceeded, maximum.time, maximum.time_error
 
 
-def _packings(run, row):
-    start, radius, grain_radius = run.start, row["radius"], row["grain_radius"]
-    centres = np.array([-1.0, 1.0])[start.aggregate, None] * (radius + grain_radius) * np.array([1.0, 0.0, 0.0])
-    inside = inner_coordination(start.position, start.contact_pairs, centres, radius - SKIN * grain_radius)
-    return inside, zones_that_meet(start.position, start.aggregate, radius, grain_radius)
-
-
 def zones_that_meet(position, aggregate, radius, grain_radius):
     """Filling of the two zones that meet over that of the aggregates, mean of the two: positions (N,3) [m] before the
     aggregates, (N,) 0 or 1, touch; radius of an aggregate and of a grain [m]."""
     centre = lambda side: np.array([-side * (radius + grain_radius), 0.0, 0.0])
     of = lambda number, side: zone_filling(position[aggregate == number], centre(side), radius, side)
     return 0.5 * (of(0, 1.0) + of(1, -1.0))
+
+
+def _zones(run, row):
+    return (zones_that_meet(run.start.position, run.start.aggregate, row["radius"], row["grain_radius"]),)
 
 
 _duration = lambda run: float(run.parameters.get("duration") or run.history["time"][-1])
@@ -64,9 +60,6 @@ MEASURED = (
     parameter("initialOverlap", "", "overlap of neighbours at the start, of that at rest", usual=1.0),
     one("duration", "s", "how long the collision is followed", _duration),
     columns.GRAIN_RADIUS,
-    constant("grain_density", "kg/m^3", "density of a grain", "density"),
-    constant("pull_off_force", "N", "F_c", "pullOffForce"),
-    constant("overlap", "m", "delta_0, the overlap at equilibrium", "equilibriumOverlap"),
     group(
         _compression,
         Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' by chance"),
@@ -76,11 +69,7 @@ MEASURED = (
         Column("t_max", "s", "time of d_max"),
         Column("t_max_error", "s", "its error"),
     ),
-    group(
-        _packings,
-        Column("inner_coordination", "", f"mean number of contacts of grains {SKIN:g} r below the surface", gaps=True),
-        Column("zone_filling", "", ZONES, gaps=True),
-    ),
+    group(_zones, Column("zone_filling", "", ZONES, gaps=True)),
     *COMPACT,
 )
 

@@ -36,11 +36,10 @@ PARTS = {
 }
 LOST = [f"part_{name}" for name in PARTS if name not in ("kinetic", "elastic")]
 # Times of energies beside the end, in periods of the stretching vibration (S17 prints none for its Fig. 14).
-TIMES, EARLY = (1250, 2500, 5000, 10_000, 20_000), 5000
+TIMES = (1250, 2500, 5000, 10_000, 20_000)
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 AMPLITUDE, EXPONENT = 3.7e-2, 0.97  # S17's fit of broken necks (section 5.3)
 FIVE = ((0.0, 0.2), (0.0, 0.7), (1.0, 0.7), (3.0, 0.7), (10.0, 0.7))  # (V_g, beta) in S17's Fig. 15
-LATER = {"gaps": True, "absent": nan}  # of columns that the first runs do not have
 
 
 def _aggregates(run, row):
@@ -77,17 +76,16 @@ def _necks(run, row):
 
 
 def _parts(run, row):
-    """PARTS at the end, what is left after each of TIMES, PARTS after EARLY [K(0)]; NaN where a run is not as long."""
+    """PARTS at the end, and what is left after each of TIMES [K(0)]; NaN where a run is not as long."""
     end, period = run.history["time"][-1], stretching_period(pair_constants(ICE, row["grain_radius"]))
 
     def after(time):
         changes = fractions_at(run.history, min(time, end)) if end >= 0.99 * time else dict.fromkeys(CHANNELS, nan)
         return [float(sum(changes[channel] for channel in channels)) for channels in PARTS.values()]
 
-    return *after(end), *(sum(after(number * period)[:2]) for number in TIMES), *after(EARLY * period)
+    return *after(end), *(sum(after(number * period)[:2]) for number in TIMES)
 
 
-_touching = lambda run: int(run.history["contacts_between"].max())
 _ended = lambda run: bool(run.history["time"][-1] < 0.999 * float(run.parameters["duration"]))
 MEASURED = (
     parameter("planar", "", "1: grains in a plane", "i"),
@@ -108,7 +106,6 @@ MEASURED = (
     ),
     columns.MET,
     columns.OUTCOME,
-    one("touching", "", "largest number of contacts between the aggregates", _touching, **LATER),
     group(
         lambda run, row: pieces(run.last.position, run.last.contact_pairs, row["grain_radius"]),
         Column("largest", "", "sticking efficiency: fraction of the mass in the largest piece"),
@@ -125,15 +122,12 @@ MEASURED = (
     group(
         _parts,
         *(Column(f"part_{n}", "K(0)", "in that way at the end, or until then") for n in PARTS),
-        *(Column(f"left_{n}", "K(0)", f"kinetic and stored energy after {n} periods", **LATER) for n in TIMES),
-        *(Column(f"part_{n}_{EARLY}", "K(0)", f"the same after {EARLY} periods", **LATER) for n in PARTS),
+        *(Column(f"left_{n}", "K(0)", f"kinetic and stored energy after {n} periods", gaps=True) for n in TIMES),
     ),
     group(
-        lambda run, row: np.ravel([loops(row["grains"], s.contact_pairs) for s in (run.start, run.last)], "F").tolist(),
-        Column("loops_at_start", "", "independent loops of contacts in both aggregates at the start", **LATER),
-        Column("loops", "", "the same at the end", **LATER),
-        Column("loop_grains_at_start", "", "grains in loops at the start", **LATER),
-        Column("loop_grains", "", "the same at the end", **LATER),
+        lambda run, row: loops(row["grains"], run.last.contact_pairs),
+        Column("loops", "", "independent loops of contacts in both aggregates at the end", gaps=True),
+        Column("loop_grains", "", "grains in loops", gaps=True),
     ),
     one("ended_by", "", "whether the run ended before its duration: nothing could meet or break", _ended, kind="b"),
     columns.CLOSURE,

@@ -131,7 +131,7 @@ MEASURED = (
         Column(
             "pair_speed", "m/s", f"largest rms of v_rel of pairs nearer than {NEAR:g} r (50.1 m/s, 3/12)", gaps=True
         ),
-        Column("fast_pairs", "", f"of them faster than {FAST:g} m/s, over N_tot", gaps=True, absent=np.nan),
+        Column("fast_pairs", "", f"of them faster than {FAST:g} m/s, over N_tot", gaps=True),
     ),
     CLOSURE,
     END,

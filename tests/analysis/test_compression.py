@@ -93,15 +93,7 @@ def test_pressure_by_the_work_counts_what_happens_between_samples():
     assert pressure_at_end(turned, 1e4) == pytest.approx(3 * SCALE * 0.004**3, rel=0.1)
 
 
-def test_fillings_at_a_share_of_a_channel_and_at_a_pressure():
-    history = compression(samples=2001)
-    other = history["filling"].copy()
-    one = np.where(history["filling"] > 0.1, 0.2 * other, 0.0)
-    history.update(one=one, other=other)
-    assert np.isnan(filling_at_share(history, "other", "one", 0.3))  # from the start
-    one[10] = 0.9  # for a moment
-    assert filling_at_share(history, "one", "other", 0.1) == pytest.approx(0.1, rel=3e-3)
-    assert np.isnan(filling_at_share(history, "one", "other", 0.3))  # not to the end
+def test_filling_from_which_on_the_pressure_stays_above_another():
     history = compression()
     assert filling_at_pressure(history, 300.0, 1000.0) == pytest.approx((300 / SCALE) ** (1 / 3), rel=2e-3)
     history["boundaryWork"][2000:] -= 1e-6 * history["boundaryWork"][2000]  # for a moment

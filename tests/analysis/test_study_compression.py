@@ -10,7 +10,6 @@ from analysis.runs.format import COMPRESSION
 from analysis.studies import compression as k13
 from analysis.studies.estimates import estimate, mean, where
 from analysis.theory import SILICATE
-from analysis.theory.aggregates import bcca_coordination
 from analysis.theory.compression import rolling_energy
 
 GRAINS = 512
@@ -89,15 +88,12 @@ def test_what_was_made_comes_back(tmp_path):
 
 
 def test_bins_of_the_filling_factor_have_little_bias_and_keep_to_what_is_covered():
-    """A bin's width biases by a thousandth where P goes with phi^3, and not where the coordination follows A24 eq
-    45."""
+    """A bin's width biases by a thousandth where P goes with phi^3."""
     filling = np.geomspace(0.004, 0.5, 4001)
     history = {"time": np.linspace(0.0, 1.0, 4001), "filling": filling, **dict.fromkeys(EDGES, filling ** (-1 / 3))}
     history |= {"boundaryWork": -SCALE * filling**2 / 2, "constraintWork": 0 * filling}  # dW = P dV, V = 1/phi
-    history["coordination"] = bcca_coordination(filling) + 0.1
-    pressure, contacts = k13.pressure_at(history), k13.coordination_at(history)
+    pressure = k13.pressure_at(history)
     inside = np.isfinite(pressure)
     assert k13.FILLINGS[inside][0] == pytest.approx(10**-2.25) and k13.FILLINGS[inside][-1] == pytest.approx(0.49)
     thin = inside & (k13.FILLINGS < 0.11)
     assert pressure[thin] == pytest.approx(SCALE * k13.FILLINGS[thin] ** 3, rel=1.2e-3)
-    assert contacts[inside] == pytest.approx(bcca_coordination(k13.FILLINGS[inside]) + 0.1, rel=1e-12)
