@@ -24,7 +24,8 @@ _FAST = 99.0  # percentile of the speeds at which the scale ends
 
 @dataclass(frozen=True)
 class Colouring:
-    """title; colours(Exported, Range) -> (N, 3); legend(Range) -> [patch() or scale()]."""
+    """title; colours(Exported, Range) -> (N, 3); legend(Range) -> [{"colour", "text"}, or the scale's ends {"low",
+    "high"}]."""
 
     title: str
     colours: Callable
@@ -56,14 +57,8 @@ def on_scale(shares):
     return np.stack([np.interp(shares, steps, channel) for channel in np.transpose(SCALE)], axis=-1)
 
 
-def patch(colour, text):
-    """Entry of a legend: a colour (R, G, B) and what it means."""
-    return {"colour": colour, "text": text}
-
-
-def scale(low, high):
-    """Entry of a legend: the colour scale from `low` to `high` (texts)."""
-    return {"low": low, "high": high}
+def _patches(colours, texts):
+    return [{"colour": colour, "text": text} for colour, text in zip(colours, texts)]
 
 
 def _of_table(table, numbers, beyond=None):
@@ -79,36 +74,29 @@ def _bonded(exported):
     return bonded
 
 
-def _aggregates(of):
-    return [
-        patch(AGGREGATE_COLOURS[k % len(AGGREGATE_COLOURS)], f"aggregate {k + 1}") for k in range(min(of.aggregates, 2))
-    ]
-
-
-def _pieces(of):
-    return [
-        patch(PIECES[0], "largest piece"),
-        *(patch(c, f"{k}.") for k, c in enumerate(PIECES[1:], 2)),
-        patch(GREY, "smaller"),
-    ]
-
-
+RANKS = ("largest piece", *(f"{rank}." for rank in range(2, len(PIECES) + 1)), "smaller")
 COLOURINGS = {
-    "aggregate": Colouring("aggregate", lambda e, of: _of_table(AGGREGATE_COLOURS, e.state.aggregate), _aggregates),
+    "aggregate": Colouring(
+        "aggregate",
+        lambda e, of: _of_table(AGGREGATE_COLOURS, e.state.aggregate),
+        lambda of: _patches(AGGREGATE_COLOURS[: of.aggregates], ("aggregate 1", "aggregate 2")),
+    ),
     "contacts": Colouring(
         "contacts of the grain",
         lambda e, of: on_scale(e.coordination() / MOST_CONTACTS),
-        lambda of: [scale("0", f"{MOST_CONTACTS} or more contacts")],
+        lambda of: [{"low": "0", "high": f"{MOST_CONTACTS} or more contacts"}],
     ),
     "speed": Colouring(
         "speed",
         lambda e, of: on_scale(_speed(e.state) / of.fastest),
-        lambda of: [scale("0", f"{of.fastest:.3g} m/s past the centre of mass")],
+        lambda of: [{"low": "0", "high": f"{of.fastest:.3g} m/s past the centre of mass"}],
     ),
-    "fragment": Colouring("fragment", lambda e, of: _of_table(PIECES, e.fragments(), GREY), _pieces),
+    "fragment": Colouring(
+        "fragment", lambda e, of: _of_table(PIECES, e.fragments(), GREY), lambda of: _patches((*PIECES, GREY), RANKS)
+    ),
     "bond": Colouring(
         "sintered bonds",
         lambda e, of: _of_table((GREY, BONDED), _bonded(e)),
-        lambda of: [patch(BONDED, "sintered to a neighbour"), patch(GREY, "not")],
+        lambda of: _patches((BONDED, GREY), ("sintered to a neighbour", "not")),
     ),
 }

@@ -211,25 +211,18 @@ class _Curves:
     """Columns of a table against the speed, for pairs of which all else stays: query {axis: (pairs,)}, at 1 cm/s."""
 
     def __init__(self, table, query):
-        unit, nodes = query.pop("velocity"), table.axes[0].nodes
-        speeds = np.concatenate([[0.5 * nodes[0]], nodes, [2.0 * nodes[-1]]])
-        columns = table.lookup(velocity=speeds, **{name: values[:, None] for name, values in query.items()})
-        self.names, values = tuple(columns), np.stack(list(columns.values()), axis=-1)  # (pairs, speeds, columns)
-        # Straight lines: their starts, and how far they rise; beyond the ends all is constant.
-        starts, rise = np.delete(values, -2, axis=1), np.diff(values, axis=1)
-        rise[:, [0, -1]] = 0.0
-        self.lines = np.concatenate([starts, rise], axis=-1).reshape(-1, 2 * len(columns))
-        self.first = np.arange(len(unit), dtype=np.int32) * starts.shape[1]
-        self.unit, self.nodes = np.log(unit), np.log(nodes)
+        self.unit, self.axis = query.pop("velocity"), table.axes[0]
+        others = {name: values[:, None] for name, values in query.items()}
+        columns = table.lookup(velocity=self.axis.nodes, **others)
+        self.names, self.values = tuple(columns), np.stack(list(columns.values()), axis=-1)  # (pairs, nodes, columns)
 
     def at(self, speeds):
         """{column: (Nr - 2, pairs)} at speeds (Nr - 2, pairs) [cm/s]."""
-        with np.errstate(divide="ignore"):
-            position = np.log(speeds)
-        position += self.unit
-        position = np.interp(position, self.nodes, np.arange(1, len(self.nodes) + 1), left=0.0)
-        line = position.astype(np.int32)
-        position -= line
-        line += self.first
-        lines = self.lines.take(line, axis=0, mode="clip")
-        return {name: lines[..., k] + position * lines[..., k + len(self.names)] for k, name in enumerate(self.names)}
+        speeds = speeds * self.unit
+        position, pairs = self.axis.position(speeds), np.arange(len(self.unit))
+        below = np.minimum(position.astype(int), len(self.axis.nodes) - 2)
+        low, high = self.values[pairs, below], self.values[pairs, below + 1]
+        found = low + (position - below)[..., None] * (high - low)
+        columns = {name: found[..., k] for k, name in enumerate(self.names)}
+        columns[INSIDE][self.axis.beyond(speeds) != 0] = 0.0
+        return columns
