@@ -56,7 +56,7 @@ def study(options):
         complain(line)
     if found.table is None:
         if not found.problems:
-            complain(f"no run of {chosen.scene.name} to analyse")
+            complain(f"no run of the study {options.name} to analyse")
         return FAILED
     runs = chosen.runs(found.table)
     rows = [row for row in chosen.rows(runs) if row.printed or row.word != "not run"]

@@ -1,74 +1,14 @@
-"""From the paths of a command line to run folders and tables of runs, and where the runs come from."""
+"""From the paths of a command line to run folders, and where runs come from."""
 
 import os
 from collections import Counter
-from dataclasses import dataclass
 from glob import glob, has_magic
 from pathlib import Path
 
-from .files import RunFolderError
-from .folder import open_run
-from .format import COLLISION, ENDED_FILE, RUN_FILE, same
-from .table import ENDING
+from .format import ENDED_FILE, RUN_FILE
 
 MARKS = RUN_FILE, ENDED_FILE  # of a run folder
 LEVELS = 2
-
-
-@dataclass(frozen=True)
-class Scene:
-    """Which runs belong together."""
-
-    name: str  # as in "A24's scene"
-    values: dict  # parameters that every run has
-    numbers: tuple  # names of parameters that must be numbers
-    kind: str = COLLISION.name
-    measured: tuple = ()  # columns of a study that tell runs apart, too
-
-    @property
-    def key(self):
-        """Columns whose values two runs must not share: these are the same run."""
-        return self.numbers + self.measured
-
-    def why_not(self, run):
-        """Why a RunFolder is no run of this scene; None if it is one."""
-        if run.kind.name != self.kind:
-            return f"it is a run of the kind {run.kind.name}, {self.name} is {self.kind}"
-        for name in self.numbers:
-            value = run.settled.get(name)
-            if isinstance(value, bool) or not isinstance(value, (int, float)):
-                return f"its parameter {name} is {value!r}, not a number"
-        for name, wanted in self.values.items():
-            if not same(run.parameters.get(name, wanted), wanted):
-                return f"{name} = {run.parameters[name]}, {self.name} has {wanted}"
-        return None
-
-
-def collect(paths, scene, notes, problems):
-    """(RunFolders that ended and are of the scene, tables (.csv) of runs) of paths: of run folders, and those in
-    folders at most LEVELS below.
-
-    notes and problems (lists of str) get a line for each run left out for a good reason, and for each path or run that
-    could not be read."""
-    is_table = lambda path: path.suffix == ENDING and path.is_file()
-    runs = []
-    for path, problem in run_folders([path for path in paths if not is_table(Path(path))]):
-        if problem:
-            problems.append(problem)
-        elif not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
-            notes.append(f"{path}: has not ended, left out")
-        else:
-            try:
-                run = open_run(path)
-            except RunFolderError as failure:
-                problems.append(str(failure))
-                continue
-            reason = scene.why_not(run)
-            if reason:
-                notes.append(f"{path}: {reason}, left out")
-            else:
-                runs.append(run)
-    return runs, list(filter(is_table, map(Path, paths)))
 
 
 def run_folders(paths):
@@ -102,8 +42,6 @@ def _inside(path):
     levels = ("*/" * level for level in range(1, LEVELS + 1))
     return sorted({file.parent for level in levels for mark in MARKS for file in path.glob(level + mark)})
 
-
-# Where runs come from.
 
 _COUNTED = {"commits": "commit", "machines": "machine", "versions": "versions", "stepFractions": "step [t0]"}
 

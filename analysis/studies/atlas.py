@@ -22,7 +22,6 @@ from ..atlas.variables import (
 )
 from ..figures.style import letter, panels, styled
 from ..measures.outcome import NEVER_MET, UNDECIDED
-from ..runs.collect import Scene
 from ..runs.measured import UNLIKE
 from ..theory import ICE
 from .columns import NotMeasured, group
@@ -270,12 +269,8 @@ STUDY = Study(
     title="The collision atlas",
     question="What do two aggregates do when they meet: where in size, filling, velocity and mass ratio do they stick, "
     "bounce, erode and break?",
-    scene=Scene(
-        name="the atlas",
-        values={"neck": 0.0, "viscoelasticTime": 0.0, "planar": 0},
-        numbers=("velocity", "impact"),
-        measured=("number",),
-    ),
+    values={"neck": 0.0, "viscoelasticTime": 0.0, "planar": 0},
+    key=("velocity", "impact", "number"),
     measured=(group(_measure, *COLUMNS),),
     pair=("number",),
     rows=rows,

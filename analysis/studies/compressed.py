@@ -8,7 +8,6 @@ import numpy as np
 
 from ..measures.compression import first_compression, largest_return_speed
 from ..measures.structure import mean_coordination
-from ..runs.collect import Scene
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.ledger import fractions_at, initial_kinetic_energy
@@ -183,12 +182,8 @@ def figures(runs):
 STUDY = Study(
     title="Collisions of close-packed and of compressed aggregates",
     question="Do compressed aggregates collide as close-packed and extracted (CPE) ones of the same filling factor do?",
-    scene=Scene(
-        "the study of CPE and compressed aggregates",
-        HEAD_ON_ICE,
-        ("velocity",),
-        measured=("compressed", "nominal", "radius", "pair", "step", *columns.OF_GRAINS),
-    ),
+    values=HEAD_ON_ICE,
+    key=("velocity", "compressed", "nominal", "radius", "pair", "step", *columns.OF_GRAINS),
     measured=MEASURED,
     pair=("compressed", "pair"),
     rows=rows,

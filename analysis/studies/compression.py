@@ -9,7 +9,6 @@ from ..figures.style import PAPER
 from ..measures import periodic_cell as cells
 from ..measures.network import spanned_axes
 from ..measures.structure import fractal_dimension, grains_within
-from ..runs.collect import Scene
 from ..runs.format import COMPRESSION, LOST_CHANNELS
 from ..runs.ledger import work_closure
 from ..theory import compression as theory
@@ -32,6 +31,7 @@ ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.4, 0.5, 0.6)
 PRESSURES = {filling: f"P_{filling:.4f}" for filling in FILLINGS}
 ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
 DIMENSIONS = {filling: f"D_{filling:g}" for filling in (0.003, 0.01, 0.03, 0.1)}  # K13 Fig. 11
+ENDS = "initial_filling", "largest_filling", "last_filling", "stretched_axes"
 VALID_TO = 0.1  # the filling factor up to which K13 eq 25 holds
 ROUNDING = 1.0 + 1e-9
 # What the clusters of a set have in common, with K13's ice (section 3.1); seeds and the ends of the compressions
@@ -308,13 +308,9 @@ STUDY = Study(
     question="Which pressure compresses a fluffy aggregate to a given filling factor, and on which properties of its "
     "grains does that depend?",
     # BCCA clusters in cells that shrink uniformly, without viscous drag.
-    scene=Scene(
-        name="the study of Kataoka et al. (2013)",
-        values={"viscoelasticTime": 0.0, "packing": "bcca", "limit": "held"},
-        numbers=("grains", *_OF_CELL, "seed"),
-        measured=(*OF_GRAINS, "initial_filling", "largest_filling", "last_filling", "stretched_axes"),
-        kind=COMPRESSION.name,
-    ),
+    kind=COMPRESSION.name,
+    values={"viscoelasticTime": 0.0, "packing": "bcca", "limit": "held"},
+    key=("grains", *_OF_CELL, "seed", *OF_GRAINS, *ENDS),
     measured=MEASURED,
     pair=("grains", "seed"),
     rows=rows,

@@ -10,7 +10,6 @@ from scipy.optimize import least_squares
 from ..figures.style import PAPER
 from ..measures.outcome import STICKING, UNDECIDED
 from ..measures.structure import DEPTH, zone_filling
-from ..runs.collect import Scene
 from ..theory import ICE, andrews, pair_constants
 from ..theory.aggregates import bcca_strength, bulk_modulus, cpe_coordination, poisson_ratio
 from . import columns
@@ -321,12 +320,8 @@ def figures(runs):
 STUDY = Study(
     title="Arakawa et al. (2024): collisions of elastoplastic aggregates",
     question="Do close-packed aggregates compress like elastoplastic spheres, with which yield stress and modulus?",
-    scene=Scene(
-        name="the study of Arakawa et al. (2024)",
-        values={"packing": "cpe"} | {name: own for name, own in HEAD_ON_ICE.items() if name not in UNCHANGED},
-        numbers=("filling", "radius", "velocity", "seed"),
-        measured=(*UNCHANGED, "duration"),
-    ),
+    values={"packing": "cpe"} | {name: own for name, own in HEAD_ON_ICE.items() if name not in UNCHANGED},
+    key=("filling", "radius", "velocity", "seed", *UNCHANGED, "duration"),
     measured=MEASURED,
     pair=("filling", "radius", "seed"),
     rows=rows,

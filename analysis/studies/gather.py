@@ -2,16 +2,18 @@
 
 import errno
 from dataclasses import dataclass
+from pathlib import Path
 
 import pandas
 
 from ..printable import suggested
 from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
-from ..runs.collect import collect, joined, provenance
+from ..runs.collect import joined, provenance, run_folders
 from ..runs.files import RunFolderError
-from ..runs.format import value_text
-from ..runs.table import FOLDER, RUN, TableError, make_table, read_table, table_text
+from ..runs.folder import open_run
+from ..runs.format import ENDED_FILE, value_text
+from ..runs.table import ENDING, FOLDER, RUN, TableError, make_table, read_table, table_text
 from .columns import NotMeasured
 
 TABLE_FILE = "runs.csv"
@@ -36,11 +38,11 @@ class Gathered:
 def gather(study, paths):
     """Gathered runs of a study.Study: tables (.csv) are read, then run folders measured.
 
-    Of runs with the same values in scene.key one is counted, since more would make errors too small: a table's row
+    Of runs with the same values in key one is counted, since more would make errors too small: a table's row
     before a folder (whose states serve figures), and of folders the longest run. Of runs that must be alike and are
     not none is counted."""
     found, rows, origins = Gathered([], []), {}, []
-    runs, tables = collect(paths, study.scene, found.notes, found.problems)
+    tables = [path for path in map(Path, paths) if path.suffix == ENDING and path.is_file()]
     for file in tables:
         try:
             own, origin = _read(study, file)
@@ -51,11 +53,11 @@ def gather(study, paths):
             found.notes.append(f"{file}: {known} runs are in a table before it, which counts")
         rows |= {key: row for key, row in own.items() if key not in rows}
         origins.append(origin)
-    unlike = _unlike(study, runs) if study.alike else None
+    measured = _measure(study, [path for path in paths if Path(path) not in tables], rows, found)
+    unlike = _unlike(study, [run for run, _ in measured]) if study.alike else None
     if unlike:
         found.problems.append(unlike)
         return found
-    measured = _measure(study, runs, rows, found)
     if measured:
         origins.append(provenance([run for run, _ in measured]))
     parts = [pandas.DataFrame(rows.values()), make_table((run.path, values) for run, values in measured)]
@@ -79,15 +81,16 @@ def _read(study, file):
         raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
     rows = {_key(study, row): row for row in table.to_dict("records")}
     if len(rows) < len(table):
-        raise TableError(f"{file}: two runs have the same {', '.join(study.scene.key)}")
+        raise TableError(f"{file}: two runs have the same {', '.join(study.key)}")
     return rows, head["provenance"]
 
 
-def _measure(study, runs, rows, found):
+def _measure(study, paths, rows, found):
     """[(RunFolder, {column: value})] of those that are not in a table; rows of a table get their folder."""
-    measured, same = {}, f"the same {', '.join(study.scene.key)} as"
-    for run in progress(runs, "reading runs"):
+    measured, same = {}, f"the same {', '.join(study.key)} as"
+    for path, problem in progress(run_folders(paths), "reading runs"):
         try:
+            run = _open(study, path, problem)
             values = study.measure(run)
         except NotMeasured as error:
             found.notes.append(f"{error}, left out")
@@ -108,8 +111,18 @@ def _measure(study, runs, rows, found):
     return list(measured.values())
 
 
+def _open(study, path, problem):
+    if problem:
+        raise RunFolderError(problem)
+    if not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
+        raise NotMeasured(f"{path}: has not ended")
+    run = open_run(path)
+    study.require(run)
+    return run
+
+
 def _key(study, values):
-    return tuple(value_text(values[name]) for name in study.scene.key)
+    return tuple(value_text(values[name]) for name in study.key)
 
 
 def _unlike(study, runs):
@@ -120,10 +133,10 @@ def _unlike(study, runs):
         usual.update(row)
     if not rows:
         return None
-    for name in study.scene.values:
+    for name in study.values:
         if name not in usual:
             return f"{name}: no run has this parameter{suggested(name, usual)}"
     found = frame([(path, {**usual, **row}) for path, row in rows])
-    names = [name for name in varied(found) if name not in (*study.scene.key, *LENGTH)]
+    names = [name for name in varied(found) if name not in (*study.key, *LENGTH)]
     must = "name them in varied, or give collision_study() one value of each"
     return differing(found, names, must) if names else None

@@ -11,7 +11,6 @@ from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.network import loops
 from ..measures.outcome import BOUNCING, STICKING
 from ..measures.structure import gyration_radius
-from ..runs.collect import Scene
 from ..runs.format import BROKEN_BONDS, CHANNELS
 from ..runs.ledger import fractions_at
 from ..runs.measured import derived_constants
@@ -39,6 +38,7 @@ LOST = [f"part_{name}" for name in PARTS if name not in ("kinetic", "elastic")]
 TIMES = (1250, 2500, 5000, 10_000, 20_000)
 FRAGMENT = 0.25  # of the total mass: lighter pieces are fragments (section 5.3)
 AMPLITUDE, EXPONENT = 3.7e-2, 0.97  # S17's fit of broken necks (section 5.3)
+OF_AGGREGATES = "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"
 FIVE = ((0.0, 0.2), (0.0, 0.7), (1.0, 0.7), (3.0, 0.7), (10.0, 0.7))  # (V_g, beta) in S17's Fig. 15
 
 
@@ -328,12 +328,8 @@ STUDY = Study(
     title="Sirono & Ueno (2017): collisions of sintered aggregates",
     question="Do sintered icy aggregates grow, bounce or break when they collide, and is it the same in space?",
     # Head-on collisions of equal aggregates of equal ice grains: BCCA ones, and those that collisions have compacted.
-    scene=Scene(
-        name="the study of Sirono & Ueno (2017)",
-        values={"material": "ice", "impact": 0.0, "sizes": "equal"},
-        numbers=("velocity", "neck", "planar", "viscoelasticTime"),
-        measured=("criticalRolling", "growth_velocity", "cut", "sliding_factor", "grains", "packing_seed"),
-    ),
+    values={"material": "ice", "impact": 0.0, "sizes": "equal"},
+    key=("velocity", "neck", "planar", "viscoelasticTime", "criticalRolling", *OF_AGGREGATES),
     measured=MEASURED,
     # A compacted aggregate grows from the first half of the BCCA aggregate of its seed: one pair.
     pair=("planar", "packing_seed"),

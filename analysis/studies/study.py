@@ -8,9 +8,8 @@ from runpy import run_path
 from typing import Callable
 
 from ..printable import suggested
-from ..runs.collect import Scene
-from ..runs.format import PARAMETER_WORDS
-from .columns import LARGEST, OUTCOME, VELOCITY, parameter, row_of
+from ..runs.format import COLLISION, PARAMETER_WORDS, same
+from .columns import LARGEST, OUTCOME, VELOCITY, NotMeasured, parameter, row_of
 
 NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
@@ -26,8 +25,10 @@ class Study:
 
     Parameters
     ----------
-    scene : runs.collect.Scene
-        Which runs belong to it, and the columns that tell two runs apart.
+    values : dict
+        Parameters that every run has.
+    key : tuple of str
+        Columns that tell two runs apart.
     measured : tuple of columns.group()
         What is measured of a run: the columns of runs.csv.
     pair : tuple of str
@@ -40,19 +41,23 @@ class Study:
         From the table of runs with the column `pair` to the one that rows and figures get.
     independent : str
         What counts as one in errors, in the plural.
+    kind : str
+        Of run.
     alike : bool
-        Whether runs that differ in parameters beside the scene's are refused together.
+        Whether runs that differ in parameters beside the key's are refused together.
     """
 
     title: str
     question: str
-    scene: Scene
+    values: dict
+    key: tuple
     measured: tuple
     pair: tuple
     rows: Callable
     figures: Callable = lambda runs: ()
     prepared: Callable = lambda runs: runs
     independent: str = "pairs"
+    kind: str = COLLISION.name
     alike: bool = False
     name: str = ""
 
@@ -60,6 +65,15 @@ class Study:
     def columns(self):
         """(runs.table.Column, ...) of the table."""
         return tuple(column for _, columns in self.measured for column in columns)
+
+    def require(self, run):
+        """NotMeasured for a RunFolder that is none of this study's."""
+        if run.kind.name != self.kind:
+            raise NotMeasured(f"{run.path}: it is a run of the kind {run.kind.name}, the study is of {self.kind}s")
+        for name, wanted in self.values.items():
+            found = run.parameters.get(name, wanted)
+            if not same(found, wanted):
+                raise NotMeasured(f"{run.path}: {name} = {found}, the study has {wanted}")
 
     def measure(self, run):
         """{column: value} of a RunFolder; NotMeasured or RunFolderError where a column can't be measured."""
@@ -88,10 +102,8 @@ def collision_study(title, question, varied, rows, figures=lambda runs: (), pair
     kinds = {name: "O" if name in PARAMETER_WORDS else "f" for name in varied}
     parameters = [parameter(name, "", "as the table of runs has it", kind) for name, kind in kinds.items()]
     measured = (*parameters, *(() if "velocity" in varied else (VELOCITY,)), OUTCOME, LARGEST)
-    of_numbers, of_words = (tuple(name for name in varied if kinds[name] == kind) for kind in "fO")
-    scene = Scene(title, values, of_numbers, measured=of_words)
     pair = pair or tuple(name for name in varied if name != "velocity")
-    return Study(title, question, scene, measured, pair, rows, figures, alike=True)
+    return Study(title, question, values, tuple(varied), measured, pair, rows, figures, alike=True)
 
 
 def find(name):

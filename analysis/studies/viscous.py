@@ -14,7 +14,6 @@ from ..measures.fragments import (
     growth_efficiency,
 )
 from ..measures.motion import NEAR, pair_velocities, root_mean_square
-from ..runs.collect import Scene
 from ..runs.ledger import WAYS, initial_kinetic_energy
 from ..runs.measured import derived_constants
 from ..runs.table import Column
@@ -327,11 +326,8 @@ STUDY = Study(
     question="How much does viscous drag between grains help colliding aggregates to grow, at which velocity do they "
     "fragment, and how are the fragments distributed?",
     # Collisions of equal BPCA aggregates of equal ice grains, without bonds, springs held at their limits.
-    scene=Scene(
-        name="the study of Arakawa et al. (2022)",
-        values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
-        numbers=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
-    ),
+    values={"packing": "bpca", "neck": 0.0, "planar": 0, "material": "ice", "sizes": "equal", "limit": "held"},
+    key=("grains", "impact", "velocity", "viscoelasticTime", "seed"),
     measured=MEASURED,
     pair=("grains", "seed"),
     rows=rows,
