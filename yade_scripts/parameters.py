@@ -100,6 +100,7 @@ class Column:
     word: str | None = None  # a text that a number's column may hold as well
     of_consequence: bool = True  # whether results depend on it
     usual: Usual | None = None  # a range outside of which unusual=1 must be given too
+    before: Any = None  # what runs had that are older than this column; None: the default
     name: str = ""
     kind: type = str
 

@@ -83,6 +83,7 @@ def run_title(run, addition=None):
         "grains": "{} grains per aggregate",
         "velocity": "{} m/s",
         "impact": "impact {}",
+        "surfaceEnergy": "$\\gamma$ = {} J/m²",
     }
     parts = []
     for name, text in known.items():

@@ -9,6 +9,7 @@ import warnings
 import numpy as np
 
 from ..measures.fragments import fragment_labels, heaviest_fragment
+from ..measures.outcome import NEVER_MET
 from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
 from ..measures.structure import mean_coordination
 from ..progress import progress
@@ -16,8 +17,8 @@ from ..runs.collect import run_folders
 from ..runs.files import RunFolderError
 from ..runs.folder import WIDTH, RunFolder, open_run, settings
 from ..runs.format import BONDS, CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
-from ..runs.ledger import closure, fractions_at, initial_kinetic_energy, largest_work, work_closure
-from ..runs.measured import are_equal, maximum_of_run, met, outcome_of_run
+from ..runs.ledger import closure, fractions_at, initial_kinetic_energy, largest_work, released_before, work_closure
+from ..runs.measured import are_equal, maximum_of_run, met, outcome_of_run, time_of_touch
 from ..runs.pieces import STRUCTURE, structure_of
 from ..runs.table import FOLDER, RUN, Column, described, make_table
 
@@ -39,7 +40,9 @@ OF_COLLISION = (
     Column("fragments", "", "number of pieces"),
     Column("growth_efficiency", "1", "(m_largest - m_target)/m_projectile (A22 eq 28); of a plate m_on/m"),
     Column("mass_on_plate", "1", "of the mass, what sticks to the plate"),
+    Column("released", "K(0)", "what contacts released before the first touch, as they did not start at rest"),
 )
+NOTICED = 0.01  # K(0) that is released, beyond which a summary says so
 OF_STRETCHING = (
     Column("tensile_strength", "Pa", f"largest tension while stretched, over {AVERAGED:g} t0"),
     Column("tensile_filling", "1", "filling factor there"),
@@ -129,6 +132,9 @@ def _collision(run):
             numbers.update(d_max_error=float(maximum.length_error), t_max_error=float(maximum.time_error))
     names = ("restitution", "why_undecided", "largest_fragment", "fragments", "growth_efficiency", "mass_on_plate")
     numbers.update({name: getattr(outcome, name) for name in names})
+    if outcome.kind == NEVER_MET:  # no collision whose growth a mean could have
+        numbers["growth_efficiency"] = None
+    numbers["released"] = released_before(run.history, time_of_touch(run) if met(run) else np.inf)
     return {**numbers, "outcome": outcome.kind, "mass_fractions": list(outcome.mass_fractions)}
 
 
@@ -304,7 +310,15 @@ def short_text(found):
         shown = zip(found.d_max, found.maximum_inside)
         text = text.assign(d_max=[f"{'' if inside else '>='}{d:.4g}" if d == d else "-" for d, inside in shown])
     text = text.rename(columns={**heads, FOLDER: RUN})
-    return text.to_string(index=False, na_rep="-", float_format="{:.4g}".format)
+    lines = [text.to_string(index=False, na_rep="-", float_format="{:.4g}".format)]
+    for path, released in zip(found[FOLDER], found.get("released", [])):
+        lines += [f"{path}: {_release(released)}"] if released > NOTICED else []
+    return "\n".join(lines)
+
+
+def _release(released):
+    start = "the aggregates did not start at rest (atRest=1)"
+    return f"contacts released {released:.3g} K(0) before the first touch: {start}"
 
 
 def long_text(run, row):
@@ -320,6 +334,8 @@ def long_text(run, row):
     lines.append(textwrap.fill(settings(run.parameters), WIDTH, initial_indent="  ", subsequent_indent="  "))
     for column in known:
         lines.append(f"  {column.name:<24}{_number(row[column.name], column.unit):<16} {column.meaning}".rstrip())
+    if (row.get("released") or 0.0) > NOTICED:
+        lines.append(f"  {_release(row['released'])}")
     lines.append(f"\n  {'energy':<28}{'at the end [J]':>14}{'change':>12} (of K(0), or a compression's largest work W)")
     for channel in CHANNEL_TABLE:
         change = row[at_end(channel.name)]

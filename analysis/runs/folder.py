@@ -34,7 +34,7 @@ WIDTH = 100  # characters of a line that a prompt shows
 # The parameters that a prompt shows, as far as a run has them.
 SHOWN = (
     *("packing", "filling", "radius", "grains", "projectileGrains", "velocity", "impact"),
-    *("material", "grainRadius", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
+    *("material", "surfaceEnergy", "grainRadius", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
 )
 _STATE_NAME = re.compile(r"\d{6}\.npz")
 # numpy's letters of the types that may stand for a quantity's kind, and what to call them.

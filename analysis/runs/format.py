@@ -2,8 +2,9 @@
 
 Scripts write what stands here and the analysis reads it. All quantities are in SI units. A folder holds
 
-    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, outcome,
-                        time reached, what ended a compression (endedBy)
+    run.json            parameters, derived constants, versions, commit, seed, hardware, wall time, time
+                        reached, status (running, completed, interrupted, failed: why), outcome of a completed
+                        collision, what ended a compression (endedBy)
     history.npz         time series, arrays (T,)
     states/NNNNNN.npz   the grains and their contacts at one moment: N grains, M contacts, P planes, K contacts with
                         planes
@@ -16,14 +17,15 @@ prints, and `sha256sum -c ended` checks it. Files that others put into the folde
 
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
-`ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends.
+`ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends. Until format 5
+the status stood under `outcome`.
 """
 
 from dataclasses import dataclass
 from math import isclose
 
-FORMAT = 5
-READABLE = (1, 2, 3, 4, 5)
+FORMAT = 6
+READABLE = (1, 2, 3, 4, 5, 6)
 SEALED = 4  # the first that has sums
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
@@ -72,6 +74,7 @@ CHANNEL_TABLE = (
     Channel("externalWork", WORK, "work against outside forces", "#d9d9d9", since=3),
 )
 CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE)
+STORED_CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE if channel.kind == STORED)
 LOST_CHANNELS = tuple(channel.name for channel in CHANNEL_TABLE if channel.kind == LOST)
 LABELS = {channel.name: channel.label for channel in CHANNEL_TABLE}
 COLOURS = {channel.name: channel.colour for channel in CHANNEL_TABLE}

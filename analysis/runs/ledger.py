@@ -6,7 +6,7 @@ A history is a mapping of arrays (T,) by name: `time` [s] and every channel of r
 import numpy as np
 
 from ..measures.periodic_cell import work_on_boundaries
-from .format import CHANNELS
+from .format import CHANNELS, STORED_CHANNELS
 
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 WAYS = {
@@ -56,6 +56,16 @@ def work_closure(history):
     """Largest |E(t) - E(0)| over the largest work of the boundaries; None where they did none."""
     total, work = total_energy(history), largest_work(history)
     return float(np.abs(total - total[0]).max()) / work if work > 0 else None
+
+
+def released_before(history, time):
+    """Largest fall of the energy that contacts store until a time [s], over K(0): what aggregates that do not start at
+    rest set free by themselves. None where K(0) = 0."""
+    unit, until = initial_kinetic_energy(history), history["time"] <= time
+    if not unit > 0:
+        return None
+    stored = np.sum([history[name] for name in STORED_CHANNELS if name != "kinetic"], axis=0)[until]
+    return float((stored[0] - stored.min()) / unit) if len(stored) else 0.0
 
 
 def fractions(history):

@@ -17,7 +17,7 @@ from .lock import under_way
 DONE, RUNNING, WAITING, FAILED = "done", "running", "waiting", "failed"
 KINDS = (DONE, RUNNING, WAITING, FAILED)
 EARLY = 0.02  # progress below which a pace says nothing
-FAILURE = "failed"  # how the outcome of a failed run begins, in run.json
+FAILURE = "failed"  # how the status of a failed run begins, in run.json
 NO_SUMS = "has no sums (of a version before 0.5.0): damage that leaves it readable is not noticed"
 
 
@@ -38,16 +38,16 @@ def state(folder):
     """State of the run in a folder (path)."""
     lock = under_way(folder)  # first: a run that ends now has its mark before it gives up its lock
     run = run_of(folder)
-    outcome = str(run.get("outcome", ""))
+    status = status_of(run)
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
         return State(DONE, 1.0, _spent(folder, run)) if run else State(FAILED, note=f"ended, but {damage(folder)}")
     if lock:
         return running(folder, run, lock)
     progress, spent = progress_of(folder, run), _spent(folder, run)
-    if outcome.startswith(FAILURE):
-        return State(FAILED, progress, spent, note=outcome)
+    if status.startswith(FAILURE):
+        return State(FAILED, progress, spent, note=status)
     left = spent * (1 - progress) / progress if progress >= EARLY else None
-    how = "stopped" if outcome == "interrupted" else "stopped without a word"
+    how = "stopped" if status == "interrupted" else "stopped without a word"
     checkpoint = os.path.isdir(os.path.join(folder, CHECKPOINT_FOLDER))
     return State(WAITING, progress, spent, left, f"{how}, {'has a checkpoint' if checkpoint else 'starts again'}")
 
@@ -81,6 +81,11 @@ def end_time(run):
     return run["derived"]["steps"] * run["derived"]["timeStep"]
 
 
+def status_of(run):
+    """The status in a run's run.json (dict), which stood under `outcome` until format 5."""
+    return str(run.get("status") or run.get("outcome") or "")
+
+
 def run_of(folder):
     """A run folder's run.json, or {} when there is none that can be read."""
     try:
@@ -107,7 +112,7 @@ def _spent(folder, run):
     """Wall time [s] until the history was last written, that of earlier starts included."""
     earlier = run.get("wallTime")
     earlier = float(earlier) if isinstance(earlier, (int, float)) else 0.0
-    if run.get("outcome") != "running":
+    if status_of(run) != "running":
         return earlier
     begun, written = changed(os.path.join(folder, RUN_FILE)), changed(os.path.join(folder, HISTORY_FILE))
     return earlier + max(0.0, written - begun)
@@ -122,7 +127,7 @@ def verify_run(folder):
     except RunFolderError as error:
         return [str(error)], []
     if sums is None:
-        if run_of(folder).get("outcome") == "completed":
+        if status_of(run_of(folder)) == "completed":
             return [f"{folder / ENDED_FILE}: missing, though the run is completed"], []
         return [], ["has no sums before it has ended"]
     if not sums:

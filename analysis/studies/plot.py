@@ -24,8 +24,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     """Figure of many runs: a quantity against one of their columns, with standard errors over pairs of aggregates.
 
     Pairs differ in their seed and files; open points are single pairs. A fraction of n runs is (k + 1)/(n +
-    2), with the binomial error. Left out are runs without a value, with a d_max that is only a bound, and of
-    fractions those that never met, are undecided or have not ended; the title counts them.
+    2), with the binomial error. Left out are runs without a value, with a d_max that is only a bound, that never
+    met, and of fractions those that are undecided or have not ended; the title counts them.
 
     Parameters
     ----------
@@ -130,8 +130,10 @@ def _complete(found, what, x, by):
     kept = found[[x, *([by] if by else []), *WHATS.get(what, [what])]].notna().all(axis=1)
     if OF_MAXIMUM & {what, x, by}:
         kept &= found.maximum_inside.eq(True)
+    if "outcome" in found:
+        kept &= found.outcome.ne(NEVER_MET)
     if what == "sticking":
-        kept &= found.ended.astype(bool) & ~found.outcome.isin((NEVER_MET, UNDECIDED))
+        kept &= found.ended.astype(bool) & found.outcome.ne(UNDECIDED)
     return found[kept]
 
 

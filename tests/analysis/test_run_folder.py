@@ -72,7 +72,7 @@ def test_a_folder_of_format_1_is_read_and_lacks_nothing_else(folder):
 DAMAGE = {
     "run.json: missing": lambda f: (f / "run.json").unlink(),
     "run.json: not the record of a run": lambda f: (f / "run.json").write_text("{}"),
-    "format is 6": lambda f: _change_record(f, lambda record: record.update(format=6)),
+    "format is 99": lambda f: _change_record(f, lambda record: record.update(format=99)),
     "history.npz: damaged": lambda f: flip(f / "history.npz", 1 / 3, 0xFF),
     "'drag' has the shape (3,)": lambda f: change_arrays(f / "history.npz", drag=np.zeros(3)),
 }

@@ -82,7 +82,7 @@ def arrays(run):
     """{file: {name: bytes}} of history and states, and the outcome."""
     import numpy as np
 
-    found = {"outcome": json.loads((run / "run.json").read_text())["outcome"]}
+    found = {"outcome": json.loads((run / "run.json").read_text())["status"]}
     for file in [run / "history.npz", *sorted((run / "states").glob("*.npz"))]:
         with np.load(file) as archive:
             found[file.name] = {name: archive[name].tobytes() for name in archive.files}

@@ -24,11 +24,11 @@ def test_a_run_that_was_killed_resumes_to_the_same_bits(tmp_path, name):
     stop_midway(tmp_path, [*arguments, OFTEN], script=script, after=0.5 if script == COMPRESS else 0.0)
     run, straight = tmp_path / "run", tmp_path / "straight" / "run"
     before, saved = read_json(run, "run.json"), read_arrays(run, "checkpoint", "recorder.npz")["rows"]
-    assert before["outcome"] == "running" and 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
+    assert before["status"] == "running" and 1 < len(saved) < len(read_arrays(straight, "history.npz")["time"])
     half = run / "states" / ".000003.npz.0123abcd.unfinished"
     half.write_bytes(b"half")
     about, _ = completed(tmp_path, *arguments, "resume=1", script=script)
-    assert about["wallTime"] > before["wallTime"] and about["outcome"] == "completed"
+    assert about["wallTime"] > before["wallTime"] and about["status"] == "completed"
     assert same_bits(run, straight) and not half.exists()
 
 
@@ -49,7 +49,7 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
-    reason, _, command = done.stdout.partition("; to continue: ")
+    reason, _, command = done.stdout.partition("\nto continue: ")
     assert "outcome undecided: " in reason and (tmp_path / "run" / "ended").exists()
     command = shlex.split(command.splitlines()[0])
     assert command[-1] == "duration=6e-07"

@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 import pytest
-from running import TINY, collide, completed, messages, read_arrays, read_json, refusal, states
+from running import PYTHON, TINY, TOP, call, collide, completed, messages, read_arrays, read_json, refusal, states
 
 from analysis.runs.format import CHANNELS, COLLISION, FORMAT
 from analysis.runs.status import verify_run
@@ -26,7 +26,7 @@ def test_run_folder_is_complete(run):
     assert sorted(os.listdir(run)) == ["checkpoint", "ended", "history.npz", "run.json", "states"]  # undecided so early
     assert verify_run(run)[0] == []
     about = read_json(run, "run.json")
-    assert (about["format"], about["kind"], about["outcome"], about["seed"]) == (FORMAT, "collision", "completed", 1)
+    assert (about["format"], about["kind"], about["status"], about["seed"]) == (FORMAT, "collision", "completed", 1)
     assert list(about["parameters"]) == list(CollisionParameters.columns())
     assert set(about["versions"]) == {"yade", "python", "numpy", "contact_law"} and about["wallTime"] > 0
     assert {"timeUnit", "timeStep", "equilibriumOverlap", "aggregateRadius", "firstTouch"} < set(about["derived"])
@@ -89,6 +89,21 @@ def test_starts_at_rest_within_each_aggregate(run):
     towards_each_other = np.outer(1 - 2 * start["aggregate"], (velocity / 2, 0, 0))
     assert np.allclose(start["velocity"], towards_each_other, rtol=0, atol=1e-9)
     assert np.all(start["position"][:26, 0] < 0) and np.all(start["position"][26:, 0] > 0)
+
+
+def test_grown_aggregates_start_at_rest_unless_they_are_meant_as_made(tmp_path):
+    """As made, some grains lie nearer to others than two radii, and pull: that drowns a small impact."""
+    small = (
+        "packing=bpca grains=1000 projectileGrains=5 velocity=2 seed=2 threads=1 endWhenApart=0 duration=2e-7".split()
+    )
+    about, history = completed(tmp_path / "rests", *small)
+    as_made, other = completed(tmp_path / "moves", *small, "atRest=0")
+    before = history["time"] < 0.99 * about["derived"]["firstTouch"]
+    assert np.ptp(history["kinetic"][before]) < 1e-4 * history["kinetic"][0]
+    assert 0 < about["derived"]["largestMotion"] < 0.02 * 1e-7 and "largestMotion" not in as_made["derived"]
+    assert np.ptp(other["kinetic"][before]) > 0.05 * other["kinetic"][0]
+    summary = call(tmp_path, PYTHON, "-m", "analysis", "summary", "rests/run", "moves/run", PYTHONPATH=TOP).stdout
+    assert "moves/run: contacts released" in summary and "rests/run: contacts" not in summary
 
 
 def test_slow_aggregates_meet_within_the_default_duration(tmp_path):

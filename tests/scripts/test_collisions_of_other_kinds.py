@@ -16,7 +16,7 @@ def test_a_collision_with_drag_ends_early_with_the_fragments_of_the_whole_time(t
     whole, history = completed(tmp_path / "whole", *arguments)
     early, shorter = completed(tmp_path / "early", *arguments, "endWhenApart=1")
     assert whole["timeReached"] == pytest.approx(6e-7, rel=1e-2)
-    assert early["outcome"] == "completed" and early["timeReached"] < 0.8 * whole["timeReached"]
+    assert early["status"] == "completed" and early["timeReached"] < 0.8 * whole["timeReached"]
     run, other = (open_run(tmp_path / name / "run") for name in ("early", "whole"))
     assert run.ended and shorter["time"][-1] == early["timeReached"] == run.last.time and len(other.states) == 7
     assert run.last.fragments().grains.tolist() == other.last.fragments().grains.tolist()

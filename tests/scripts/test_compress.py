@@ -52,7 +52,7 @@ def test_the_cell_follows_k13(run):
 
 def test_it_ends_where_it_should_and_the_ledger_closes(run):
     _, about, history = run
-    assert about["outcome"] == "completed" and about["kind"] == "compression"
+    assert about["status"] == "completed" and about["kind"] == "compression"
     assert 0.5 <= history["filling"][-1] < 0.502 and history["filling"][-2] < 0.5
     assert about["parameters"]["initialFilling"] == pytest.approx(history["filling"][0])
     assert history["coordination"] == pytest.approx(2 * history["contacts"] / 128)
@@ -85,7 +85,7 @@ def test_it_ends_at_a_pressure(tmp_path):
     assert f"\nended by finalPressure, at a filling of {last:.3g}" in done.stdout
     assert about["parameters"]["finalFilling"] == pytest.approx(0.65, abs=0.005)
     (message,) = messages(done)
-    assert done.returncode == 0 and "the cell is not stretched" in message and about["outcome"] == "completed"
+    assert done.returncode == 0 and "the cell is not stretched" in message and about["status"] == "completed"
 
 
 def test_stretching_along_an_axis(tmp_path):

@@ -97,4 +97,4 @@ def test_a_task_at_its_limit_writes_a_checkpoint_and_is_put_into_the_queue_again
     ends, long = output.splitlines()
     assert ends == "ends: done" and long.startswith("long: waiting checkpoint at ")
     assert (tmp_path / "scontrol").read_text() == "requeue 12_3\n"
-    assert read_json(tmp_path, "long", "run.json")["outcome"] == "interrupted"
+    assert read_json(tmp_path, "long", "run.json")["status"] == "interrupted"

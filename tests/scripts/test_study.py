@@ -85,7 +85,7 @@ def test_a_stopped_study_leaves_checkpoints_and_no_processes(tmp_path):
     assert errors == "stopping; the runs write their checkpoints\n"
     assert output.splitlines()[-1] == "tiny: 2 rows, 0 done, 0 failed, 2 left"
     assert process_writing(run) is None
-    assert read_json(run, "run.json")["outcome"] == "interrupted"
+    assert read_json(run, "run.json")["status"] == "interrupted"
     assert not (tmp_path / "runs" / "tiny" / "ends").exists()
     lines = study(tmp_path, "tiny.table", "--status").stdout.splitlines()
     assert lines[0].split()[:2] == ["waiting", "killed"] and "checkpoint at " in lines[0]

@@ -71,6 +71,15 @@ def test_difference_names_the_first_parameter_that_disagrees():
     assert differences(wanted, {**run, "kind": "compression"})() == "kind = compression, not collision"
 
 
+def test_runs_older_than_a_parameter_had_what_its_column_says():
+    """Aggregates used to come as they were made; those of a lattice are at rest."""
+    for packing, at_rest in (("bcca", 0), ("bcca", 1), ("cpe", 0)):
+        wanted = parse({"packing": packing, "grains": 20, "duration": 1e-9, "atRest": at_rest})
+        given = {name: value for name, value in wanted.as_dict().items() if name != "atRest"}
+        difference = differences(wanted, {"format": 5, "parameters": given, "derived": {}})()
+        assert difference == ("atRest = 0, not 1" if at_rest else None)
+
+
 def test_a_packing_file_that_has_changed_since_makes_another_run(tmp_path):
     file = str(tmp_path / "a.npz")
     for seed in (1, 1, 2):

@@ -21,7 +21,7 @@ from yade_scripts.packings.aggregate import MOST_GRAINS, NAMED_PACKING, Aggregat
 from yade_scripts.packings.packing import SUM, sum_of_file
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
-from yade_scripts.run.kind import Estimate, Kind, Scene
+from yade_scripts.run.kind import Ending, Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
 AGGREGATE, WALL = "aggregate", "wall"  # targets
@@ -250,6 +250,8 @@ def _with_size(parameters, pair):
 def _sizes(aggregate_radius, pair, parameters):
     """Entries of run.json about the aggregates, with packing = file also how they were made."""
     found = {"aggregateRadius": aggregate_radius, "grainsPerAggregate": pair[0].grains}
+    if parameters.atRest:
+        found["largestMotion"] = max(packing.parameters.get("largestMotion", 0.0) for packing in pair)
     names = ("projectile",) if parameters.target == WALL else ("target", "projectile")
     for name, packing in zip(names, pair):
         if parameters.packing == "file":
@@ -302,9 +304,12 @@ def _end_when_apart(parameters, constants, aggregate_radius, touch):
     return control
 
 
-def why_undecided(folder):
-    """Why the outcome of the run in a folder is not decided (analysis.measures.decided), or None."""
-    return outcome_of_run(open_run(folder)).why_undecided
+def ending(folder):
+    """Ending of the run in a folder, as analysis.measures.outcome and .decided have it."""
+    found = outcome_of_run(open_run(folder))
+    pieces = f"{found.fragments} piece{'s' * (found.fragments > 1)}"
+    words = f"{pieces}, the largest {found.mass_fractions[0]:.4g} of the mass, growth {found.growth_efficiency:.4g}"
+    return Ending(found.kind, words, found.why_undecided)
 
 
 # ---- a shorter step at the impact ----
@@ -396,4 +401,4 @@ def expected(parameters, run):
     return found
 
 
-KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, why_undecided)
+KIND = Kind(COLLISION, CollisionParameters, prepare, estimate, expected, ending)

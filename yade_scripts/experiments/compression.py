@@ -19,8 +19,9 @@ from yade_scripts.experiments.compression_end import AXES, LOOSE, deform, shrink
 from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
 from yade_scripts.packings.aggregate import MOST_GROWN
 from yade_scripts.packings.ballistic import rbd
+from yade_scripts.packings.packing import brought_to_rest
 from yade_scripts.packings.placing import require_apart_from_images, smallest_edge
-from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, Check, ParameterError, between, one_of, parameter
+from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
@@ -58,6 +59,9 @@ class CompressionParameters(GrainParameters, RunParameters):
         one_of(list(PACKING.values())),
         "how it is made: in a periodic cell by cluster-cluster aggregation (bcca), between walls by ballistic "
         "deposition on the lower one, as high as wide (rbd)",
+    )
+    atRest: int = parameter(
+        1, SWITCH, "1: contacts of a cluster are brought to rest first; 0, and between walls: as it is made", before=0
     )
     seed: int = parameter(1, NOT_NEGATIVE, "of the cluster or layer")
     strainRate: float = parameter(
@@ -111,7 +115,8 @@ class CompressionParameters(GrainParameters, RunParameters):
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
-        return super(CompressionParameters, self.changed(packing=packing)).filled_in()
+        at_rest = 0 if self.boundary == WALLS else self.atRest
+        return super(CompressionParameters, self.changed(packing=packing, atRest=at_rest)).filled_in()
 
     def require_stretched_below(self, final):
         """Raise ParameterError where the stretching would not end below a filling factor (None: not known)."""
@@ -180,11 +185,12 @@ def prepare(parameters, threads):
 
     rolling = parameters.surfaceEnergy * parameters.grainRadius * parameters.criticalRolling
     height = {"initialHeight": edges[UP]} if walls else {}
+    moved = {name: value for name, value in packing.parameters.items() if name == "largestMotion"}
     between = min(BETWEEN_SAMPLES, FINEST_FILLING / (6 * parameters.strainRate))
     return Scene(
         parameters=parameters,
         constants=constants,
-        derived={"initialEdge": edges[0], **height, "rollingEnergy": 6 * pi**2 * rolling},  # K13 eq 1
+        derived={"initialEdge": edges[0], **moved, **height, "rollingEnergy": 6 * pi**2 * rolling},  # K13 eq 1
         aggregate=np.zeros(packing.grains, dtype=int),
         build=build,
         series=own_series,
@@ -205,6 +211,8 @@ def _cluster(parameters, constants):
 
     radius, overlap = parameters.grainRadius, constants["equilibriumOverlap"]
     cluster = packings.bcca(parameters.grains, radius, overlap, parameters.seed)
+    if parameters.atRest:
+        cluster = brought_to_rest(cluster, radius, overlap)
     edge = smallest = smallest_edge(cluster)
     if parameters.initialFilling is not None:
         volume = parameters.grains * 4 / 3 * pi * parameters.grainRadius**3

@@ -7,7 +7,14 @@ import numpy as np
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings.ballistic import bcca, bpca
 from yade_scripts.packings.lattice import cpe, grain_number
-from yade_scripts.packings.packing import OF_CONTACTS, largest_piece, packing_from_file, random_stream
+from yade_scripts.packings.packing import (
+    OF_CONTACTS,
+    brought_to_rest,
+    centred,
+    largest_piece,
+    packing_from_file,
+    random_stream,
+)
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 
 MOST_GRAINS = 5_000_000
@@ -56,6 +63,9 @@ class AggregateParameters(GrainParameters):
     initialOverlap: float = parameter(
         1.0, UP_TO_ONE, "of grains of a cpe aggregate at the start; below 1 they pull", "of that at rest"
     )
+    atRest: int = parameter(
+        1, SWITCH, "1: contacts are brought to rest first; 0: it is as made (cpe: at rest by itself)", before=0
+    )
     seed: int = parameter(1, NOT_NEGATIVE, "of the random packings")
 
     ONLY_WITH = [
@@ -76,7 +86,7 @@ class AggregateParameters(GrainParameters):
             if self.sizes == of and getattr(found, name) is None:
                 raise ParameterError(f"{name}: not given with sizes = {of}; {self.columns()[name].must}")
         if self.packing == "cpe":
-            found = found._of_cpe()
+            found = found.changed(atRest=0)._of_cpe()
         elif self.is_grown:
             found = found.changed(grains=GRAINS_GROWN if self.grains is None else self.grains)
             require_growable(self.packing, "grains", found.grains)
@@ -112,6 +122,15 @@ def require_growable(packing, name, grains):
 def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin; overlap: of touching grains of grainRadius [m]. Its
     parameters name the material, so that no run of others starts with contacts out of rest. Raises PackingError."""
+    packing = _as_made(parameters, overlap, index)
+    if not parameters.atRest or packing.parameters["packing"] == "cpe":  # a lattice, meant to be as it is
+        return packing
+    rested = brought_to_rest(packing, parameters.grainRadius, overlap)
+    moved = rested.parameters["largestMotion"] > 0
+    return replace(rested, position=centred(rested.position, rested.radius)) if moved else rested
+
+
+def _as_made(parameters, overlap, index):
     p, planar = parameters, bool(parameters.planar)
     if p.packing == "file":
         return packing_from_file(p.file, p.grainRadius, overlap, planar, p)

@@ -12,10 +12,9 @@ from analysis.runs.files import RunFolderError, array_names, read_bytes
 from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
 from yade_scripts.packings import Packing, PackingError, centred, random_stream
-from yade_scripts.packings.packing import OF_CONTACTS, at_rest, largest_cluster, randomly_turned
+from yade_scripts.packings.packing import OF_CONTACTS, brought_to_rest, largest_cluster, randomly_turned
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, one_line, parameter
 
-DEEPEST = 1.05  # equilibrium overlaps that a contact may keep after a pressure where all cannot be at rest together
 NO_RUN = (OSError, ValueError, KeyError, TypeError, RunFolderError)  # what reading one may raise
 
 
@@ -107,21 +106,9 @@ def cut(state, parameters, index=0):
     about = dict(packing="compressed", aggregateRadius=reach, filling=len(kept) / parameters.radius**3)
     about |= dict(state.material, index=index, dropped=len(inside) - len(kept))
     packing = Packing(position[inside[kept]], state.radius[inside[kept]], parameters.seed, about)
-    rested = _at_rest(packing, pairs, grain_radius, state.overlap)
+    rested = brought_to_rest(packing, grain_radius, state.overlap, pairs)
     centre = rested.position.mean(axis=0)
     return replace(rested, position=randomly_turned(rested.position - centre, stream, False))
-
-
-def _at_rest(packing, pairs, grain_radius, overlap):
-    """The packing with its contacts at rest; PackingError where one stays deeper than DEEPEST or comes apart."""
-    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap)
-    if deviation.min() <= -1.0 or deviation.max() >= DEEPEST - 1:
-        worst = deviation[np.abs(deviation).argmax()]
-        must = f"must be at most {DEEPEST:g}: a looser state"
-        raise PackingError(f"contacts cannot come to rest together: one overlaps by {1 + worst:.3g}; {must}")
-    motion = float(np.linalg.norm(position - packing.position, axis=1).max())
-    about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
-    return replace(packing, position=position, parameters=about)
 
 
 def largest_piece_of_run(path):
@@ -138,7 +125,7 @@ def largest_piece_of_run(path):
     kept, pairs = largest_cluster(len(state.radius), state.contact_pairs)
     about = {"packing": "collided", "of": len(state.radius)}
     packing = Packing(state.position[kept], state.radius[kept], int(run.parameters.get("seed", 0)), about)
-    rested = _at_rest(packing, pairs, grain_radius, overlap)
+    rested = brought_to_rest(packing, grain_radius, overlap, pairs)
     return replace(rested, position=centred(rested.position, rested.radius))
 
 

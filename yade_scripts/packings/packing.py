@@ -33,6 +33,7 @@ ITERATIONS = 300
 SUM = "sha256"  # of a packing, among its parameters
 SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
 OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
+MOST_PRESSED = 1.05  # equilibrium overlaps that a contact may keep where not all can be at rest together
 DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
 
 
@@ -189,6 +190,21 @@ def at_rest(position, radius, pairs, grain_radius, overlap):
         normal = separation / np.linalg.norm(separation, axis=1)[:, None]
         # k ~ a_0 ~ R^(2/3), as depth^2 (packing.touching_distance)
         moved = moved + _smallest_motion(normal, pairs, missing, depth / overlap, len(radius))
+
+
+def brought_to_rest(packing, grain_radius, overlap, pairs=None):
+    """The packing with its contacts at rest, and how far the farthest grain was moved (largestMotion [m]) among its
+    parameters. pairs (M, 2): its contacts, if not those that touch; overlap: at rest of two of grain_radius [m].
+    Raises PackingError where one stays deeper than MOST_PRESSED or comes apart."""
+    pairs = contacts(packing) if pairs is None else pairs
+    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap)
+    if deviation.min(initial=0.0) <= -1.0 or deviation.max(initial=0.0) >= MOST_PRESSED - 1:
+        worst = deviation[np.abs(deviation).argmax()]
+        must = f"must be at most {MOST_PRESSED:g}: a looser state"
+        raise PackingError(f"contacts cannot come to rest together: one overlaps by {1 + worst:.3g}; {must}")
+    motion = float(np.linalg.norm(position - packing.position, axis=1).max())
+    about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
+    return replace(packing, position=position, parameters=about)
 
 
 def _smallest_motion(normal, pairs, change, weight, grains):

@@ -134,8 +134,9 @@ def _saved_scene(omega):
 def difference(kind, wanted, run, but=()):
     """The first parameter in which a run is not what is wanted, 'name = this, not that', or None.
 
-    A parameter that the run doesn't know (an older one) had its default, or stands under 'derived'. A run may be longer
-    than is wanted. A step that is still to be chosen is that of any run that chose it for the same tolerance.
+    A parameter that the run doesn't know (an older one) stands under 'derived', or had the value that its Column names.
+    A run may be longer than is wanted. A step that is still to be chosen is that of any run that chose it for the same
+    tolerance.
 
     kind: run.kind.Kind; wanted: parameters of that kind; run: as in run.json; but: names that are not compared."""
     there = run.get("kind", "collision")  # format 1 had collisions only
@@ -148,7 +149,8 @@ def difference(kind, wanted, run, but=()):
     for name, column in columns.items():
         if not column.of_consequence or name in left_out:
             continue
-        value, found = expected[name], held.get(name, run.get("derived", {}).get(name, column.default))
+        older = column.default if column.before is None else column.before
+        value, found = expected[name], held.get(name, run.get("derived", {}).get(name, older))
         longer = name == "duration" and None not in (found, value) and found > value
         if not (same(value, found) or longer):
             return f"{name} = {_text(found)}, not {_text(value)}"

@@ -20,6 +20,14 @@ class Estimate(NamedTuple):
     steps: float
 
 
+class Ending(NamedTuple):
+    """What became of a run that came to its end."""
+
+    outcome: str  # in a word or two
+    words: str = ""  # more about it
+    why_undecided: str | None = None  # where longer runs may have another outcome
+
+
 @dataclass(frozen=True)
 class Scene:
     """A run that is ready to be built in YADE. States are those of contact_law.snapshot(), with `aggregate`.
@@ -56,8 +64,8 @@ class Kind:
     estimate: Callable[[Any], Estimate]  # of parameters, without YADE
     # (parameters, run.json) -> {name: value} that a run should hold of parameters that are None and follow from the run
     expected: Callable[[Any, Mapping], Mapping] = lambda parameters, run: {}
-    # run folder -> why its outcome is not decided at its end, in a few words, or None
-    why_undecided: Callable[[str], str | None] = lambda folder: None
+    # run folder -> Ending, or None where there is nothing that becomes of such a run
+    ending: Callable[[str], Ending | None] = lambda folder: None
 
     @property
     def name(self):

@@ -12,6 +12,7 @@ import numpy as np
 from analysis.printable import printable
 from analysis.progress import tqdm
 from analysis.runs.files import RunFolderError
+from analysis.runs.folder import settings
 from analysis.version import version_text
 from yade_scripts.parameters import InputError, ParameterError, one_line, one_line_errors, tell
 from yade_scripts.run import checkpoint
@@ -87,10 +88,11 @@ def _carry_out(kind, scene, schedule, folder, begun):
         **made_with(),
         "hardware": hardware(),
         "endedBy": None,
+        "outcome": None,  # until it has come to its end
     }
     wall_time = lambda: time.monotonic() - begun
-    write = lambda outcome: folder.write_run({**run, "wallTime": wall_time(), "outcome": outcome})
-    recorder, undecided = Recorder(folder, schedule, kind.format, scene), None
+    write = lambda status: folder.write_run({**run, "wallTime": wall_time(), "status": status})
+    recorder, ending = Recorder(folder, schedule, kind.format, scene), None
     try:
         if saved:
             recorder.resume(saved.rows, saved.columns, saved.states)
@@ -98,39 +100,44 @@ def _carry_out(kind, scene, schedule, folder, begun):
         else:
             steps, runner, begin = yade_scene.start(scene, schedule, recorder)
         write("running")  # which a killed run keeps
+        print(f"{kind.name}: {settings(run['parameters'])}", flush=True)
         if scene.step_choice != "as given":
             print(f"step: {scene.step_choice}", flush=True)
+        if moved := scene.derived.get("largestMotion"):
+            print(f"at rest: grains were moved by up to {moved / parameters.grainRadius:.2g} grain radii", flush=True)
         writer = checkpoint.CheckpointWriter(folder, run, recorder, wall_time, parameters.checkpointInterval)
-        outcome, status = _step(steps, recorder, runner, begin, writer)
+        status, code = _step(steps, recorder, runner, begin, writer)
         recorder.write_history()
-        if outcome == "completed":
-            undecided, run["endedBy"] = kind.why_undecided(folder.path), scene.ended_by(recorder)
-        if undecided:
+        if status == "completed":
+            ending, run["endedBy"] = kind.ending(folder.path), scene.ended_by(recorder)
+        if ending:
+            run["outcome"] = ending.outcome
+        if ending and ending.why_undecided:
             writer.save()
     except (OSError, RuntimeError, RunFolderError) as error:  # a folder's, or a scene's that YADE can't load
-        outcome, status = f"failed: {one_line(error)}", 1
+        status, code = f"failed: {one_line(error)}", 1
     run["timeReached"] = recorder.time
     try:
-        write(outcome)
-        if outcome == "completed":
+        write(status)
+        if status == "completed":
             folder.write_ended()
     except OSError as error:
-        if not outcome.startswith("failed"):
-            outcome, status = f"failed: {one_line(error)}", 1
+        if not status.startswith("failed"):
+            status, code = f"failed: {one_line(error)}", 1
             with suppress(OSError):
-                write(outcome)
-    if outcome == "completed" and not undecided:
+                write(status)
+    if status == "completed" and not (ending and ending.why_undecided):
         with suppress(OSError):
             folder.remove_checkpoint()
-    _print_end(folder.path, run, outcome, undecided, wall_time())
-    return status
+    _print_end(folder.path, run, status, ending, wall_time())
+    return code
 
 
 def _step(steps, recorder, runner, begin, writer):
-    """Call begin(), and step until that many O.steps are taken or the scene is at its end; (outcome, exit status).
+    """Call begin(), and step until that many O.steps are taken or the scene is at its end; (status, exit status).
 
     Ctrl-C and SIGTERM end the run after the step that is being taken, with a checkpoint and one more step that records
-    where it stopped (runner samples it); the outcome is then "interrupted"."""
+    where it stopped (runner samples it); the status is then "interrupted"."""
     from yade.wrapper import Omega
 
     omega, stop = Omega(), StopSignals()
@@ -160,19 +167,20 @@ def _step(steps, recorder, runner, begin, writer):
     return "completed", 0
 
 
-def _print_end(path, run, outcome, undecided, seconds):
+def _print_end(path, run, status, ending, seconds):
     """The last lines of a log, and one on stderr for a failure; neither when it can't be written."""
-    if outcome.startswith("failed"):
-        tell(outcome)
+    if status.startswith("failed"):
+        tell(status)
     try:
         if run["endedBy"]:
             print(f"ended by {run['endedBy']}")
-        if undecided:
-            longer = checkpoint.command(path, duration=2 * run["parameters"]["duration"])
-            print(f"outcome undecided: {undecided}; to continue: {longer}")
-        if outcome == "interrupted":
+        if ending:
+            print(f"outcome {ending.outcome}: {ending.why_undecided or ending.words}")
+        if ending and ending.why_undecided:
+            print(f"to continue: {checkpoint.command(path, duration=2 * run['parameters']['duration'])}")
+        if status == "interrupted":
             print(f"to continue: {checkpoint.command(path)}")
-        print(f"run folder: {printable(path)} ({printable(outcome)}, {seconds:.1f} s)", flush=True)
+        print(f"run folder: {printable(path)} ({printable(status)}, {seconds:.1f} s)", flush=True)
     except OSError:  # what is left in the buffer would fail again at exit
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 

@@ -165,7 +165,7 @@ def _stopped(folder, run):
     if not run:
         return "", 0.0
     if not checkpoint.exists(folder):
-        return ("starts again", 0.0) if run.get("outcome") in ("running", "interrupted") else ("", 0.0)
+        return ("starts again", 0.0) if status.status_of(run) in ("running", "interrupted") else ("", 0.0)
     try:
         rows = checkpoint.Checkpoint.read(folder).rows
     except InputError:

@@ -134,7 +134,7 @@ def row(scene):
     else:
         target, projectile = scene.grains
         aggregates = {"packing": scene.structure, "grains": target, "projectileGrains": projectile, "seed": scene.seed}
-    row = {"description": scene.name, **aggregates, "velocity": f"{scene.velocity:.6g}"}
+    row = {"description": scene.name, **aggregates, "atRest": 0, "velocity": f"{scene.velocity:.6g}"}
     row |= {"impact": f"{scene.impact:.6g}", "material": scene.material, "grainRadius": GRAIN_RADIUS}
     return {**row, "stepFraction": step(scene), "threads": 1, "states": STATES, "out": f"{RUNS}/{scene.name}"}
 
@@ -203,8 +203,8 @@ def tables():
     """{size: (rows, head)} of the cells."""
     found = {}
     for most, (name, seeds) in CELLS_OF.items():
-        row = {"!SCRIPT": "yade_scripts/compress.py", "grains": 2 * most, "strainRate": "1e-5", "finalFilling": 0.5}
-        row |= {"stepFraction": 0.3, "states": 60, "threads": 1}
+        row = {"!SCRIPT": "yade_scripts/compress.py", "grains": 2 * most, "atRest": 0}
+        row |= {"strainRate": "1e-5", "finalFilling": 0.5, "stepFraction": 0.3, "states": 60, "threads": 1}
         rows = [{"description": f"s{n}", **row, "seed": n, "out": f"{CELLS}/s{n}"} for n in seeds]
         found[name.removeprefix("atlas-")] = rows, CELL_HEAD
     return found

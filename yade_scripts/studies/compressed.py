@@ -66,7 +66,8 @@ def cut_pair(filling, seed):
 
 def cells():
     """Rows of the cells' table."""
-    row = {"!SCRIPT": "yade_scripts/compress.py", "grains": GRAINS, "strainRate": RATE, "stepFraction": CELL_STEP}
+    row = {"!SCRIPT": "yade_scripts/compress.py", "grains": GRAINS, "atRest": 0}
+    row |= {"strainRate": RATE, "stepFraction": CELL_STEP}
     found = []
     for filling, seed in PAIRS:
         name = f"f{filling:g}-s{seed}"
@@ -80,7 +81,7 @@ def collisions():
     found = []
     for i, (filling, seed) in product(EXPONENTS, PAIRS):
         cpe = {"packing": "cpe", "filling": filling, "radius": RADIUS, "seed": seed}
-        compressed = {"packing": "file", **dict(zip(("file", "projectileFile"), files_of(filling, seed)))}
+        compressed = {"packing": "file", "atRest": 0, **dict(zip(("file", "projectileFile"), files_of(filling, seed)))}
         for kind, given in (("cpe", cpe), ("compressed", compressed)):
             name = f"{kind}-f{filling:g}-i{i}-s{seed}"
             last = {"duration": DURATION, "stepFraction": STEP, "threads": 1, "out": f"{COLLISIONS}/{name}"}

@@ -50,7 +50,8 @@ def rows(sets, folder):
     """Rows of [(parameters, seeds)], with names and run folders such as ice-N1024-Cv1e-6-k0-s1."""
     found = []
     for parameters, seeds in sets:
-        row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "stepFraction": STEP, **parameters}
+        row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "atRest": 0, "stepFraction": STEP}
+        row |= parameters
         varied = [f"{short}{parameters[name]}" for name, short in SHORT.items() if name in parameters]
         for seed in seeds:
             name = "-".join([row["material"], *varied, f"s{seed}"])

@@ -83,7 +83,7 @@ class Point:
             files = {"file": self.grown(seed, 0), "projectileFile": self.grown(seed, 1)}
             aggregates = {"packing": "file", "grains": "*", "seed": "*", **files}
             step = STEP_COMPACTED.get(self.neck, STEP)
-        row = {"description": self.name(seed), **aggregates}
+        row = {"description": self.name(seed), **aggregates, "atRest": 0}
         row |= {"planar": self.planar, "neck": f"{self.neck:g}", "velocity": self.velocity}
         row |= {"criticalRolling": f"{self.rolling:g}e-10", "viscoelasticTime": self.drag, "limit": self.limit}
         row |= {"slidingStiffnessFactor": SLIDING, "duration": DURATION if slow else DURATION_FAST, "endWhenApart": 1}
@@ -208,7 +208,7 @@ def grow(point, seed):
 def collide(half, point, files, run):
     """Run the collision that compacts, at V_g."""
     duration = min(float(DURATION), CROSSINGS * 2 * packings.extent(half) / point.growth)
-    arguments = dict(packing="file", file=files[0], projectileFile=files[1], velocity=point.growth, out=run)
+    arguments = dict(packing="file", atRest=0, file=files[0], projectileFile=files[1], velocity=point.growth, out=run)
     arguments |= dict(criticalRolling=point.rolling * 1e-10, slidingStiffnessFactor=SLIDING, limit=point.limit)
     arguments |= dict(planar=point.planar, duration=duration, states=2, threads=1)
     command = ["yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "collide.py")]

@@ -57,7 +57,7 @@ def rows(scenes, folder, **others):
     found = []
     for grains, twelfths, i, time, seed in scenes:
         name = f"n{grains}-v{i}-b{twelfths}-t{time}-s{seed}"
-        row = {"description": name, "packing": "bpca", "grains": grains, "impact": f"({twelfths}/12)**0.5"}
+        row = {"description": name, "packing": "bpca", "atRest": 0, "grains": grains, "impact": f"({twelfths}/12)**0.5"}
         row |= {"velocity": f"10**(0.1*{i})", "viscoelasticTime": f"{time}e-12", "seed": seed, "duration": DURATION}
         row |= {"endWhenApart": 1, "states": STATES, "stepFraction": STEP if grains == GRAINS else LONGER_STEP}
         found.append({**row, "threads": 1, "out": f"{folder}/{name}", **others})
