@@ -10,8 +10,7 @@ from ..runs.table import FOLDER
 from .estimates import ending, estimate, mean
 from .figures import curves
 
-LARGEST = "largest_fraction"
-WHATS = {"sticking": ["outcome"], "largest": [LARGEST], "energy": [at_end(channel) for channel in CHANNELS]}
+WHATS = {"sticking": "outcome", "largest": "largest_fraction", "energy": at_end("kinetic")}  # and their columns
 FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggregates
 OF_MAXIMUM = {"d_max", "t_max"}
 
@@ -35,10 +34,8 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         column.
     runs : pandas.DataFrame, path, pattern, RunFolder or list of these
         A table(), or what that takes.
-    x : str
-        Column of numbers.
-    by : str
-        Column that distinguishes curves (of "energy" panels).
+    x, by : str
+        Columns: of numbers, and that distinguishes curves (of "energy" panels).
     where : dict, optional
         {column: value} of the runs that are drawn.
     logarithmic : str, optional
@@ -54,15 +51,24 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         A ValueError, also if runs differ in parameters beside x, by, the seed and the files.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
-    attributes = found.attrs
+    attributes, where = found.attrs, where or {}
     found = found.reset_index(drop=True)  # of tables put together
     found.attrs = attributes
-    seed = "seed" if "seed" in found else FOLDER
-    _require_columns(found, what, x, by, where or {})
-    for name, value in (where or {}).items():
+    for name in filter(None, (what, x, by, *where)):
+        if name not in found and not (name == what and what in WHATS):
+            names = (*WHATS, *found) if name == what else found
+            raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
+    for name, value in where.items():
         found = _only(found, name, value)
-    number, found = len(found), _complete(found, what, x, by)
-    _require_drawable(found, what, x, by, seed)
+    number, column = len(found), WHATS.get(what, what)
+    found = _complete(found, what, [name for name in (column, x, by) if name])
+    if not len(found):
+        raise CannotPlot(f"no run has all of {', '.join(filter(None, (what, x, by)))}")
+    for name in {x, column} - {"outcome"}:
+        if found[name].dtype.kind not in "fiub":
+            raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+    seed = "seed" if "seed" in found else FOLDER
+    _require_alike(found, x, by, seed)
     files = [name for name in FILES if name in found and found[name].notna().any()]
     found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
     for name in filter(None, (x, by)):
@@ -98,37 +104,25 @@ def _draw(found, what, x, by, logarithmic):
     if what == "sticking":
         of, label = lambda own: ending(own, STICKING), "fraction of runs that stick"
     else:
-        column = WHATS.get(what, [what])[0]
+        column = WHATS.get(what, what)
         of, label = lambda own: estimate(mean(column), own), with_unit(column)
     limits = (-0.03, 1.03) if what in WHATS else None
     return curves(found, of, x, limits=limits, y_label=label, **how)
 
 
-def _require_columns(found, what, x, by, where):
-    if by == x:
-        raise CannotPlot(f"by = {by}: must be another column than x")
-    for name in (what, x, *([by] if by else []), *where):
-        if name not in found and not (name == what and what in WHATS):
-            names = (*WHATS, *found) if name == what else found
-            raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
-
-
 def _only(found, name, value):
     """The runs with a value in a column."""
-    column = found[name]
-    if column.dtype.kind in "fiu" and isinstance(value, str):
-        raise CannotPlot(f"where {name} = {value}: must be a number")
-    kept = column.map(lambda own: same(own, value))
+    kept = found[name].map(lambda own: same(own, value))
     if not kept.any():
-        there = ", ".join(map(str, column.unique()))
+        there = ", ".join(map(str, found[name].unique()))
         raise CannotPlot(f"where {name} = {value}: no run is left; must be one of {there}")
     return found[kept]
 
 
-def _complete(found, what, x, by):
+def _complete(found, what, columns):
     """The runs that have all that is drawn."""
-    kept = found[[x, *([by] if by else []), *WHATS.get(what, [what])]].notna().all(axis=1)
-    if OF_MAXIMUM & {what, x, by}:
+    kept = found[columns].notna().all(axis=1)
+    if OF_MAXIMUM & {*columns}:
         kept &= found.maximum_inside.eq(True)
     if "outcome" in found:
         kept &= found.outcome.ne(NEVER_MET)
@@ -137,12 +131,8 @@ def _complete(found, what, x, by):
     return found[kept]
 
 
-def _require_drawable(found, what, x, by, seed):
-    if not len(found):
-        raise CannotPlot(f"no run has all of {', '.join(dict.fromkeys(filter(None, (what, x, by))))}")
-    for name in [x, *([] if what in ("sticking", "energy") else WHATS.get(what, [what]))]:
-        if found[name].dtype.kind not in "fiub":
-            raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+def _require_alike(found, x, by, seed):
+    """CannotPlot for runs of several kinds, and for those that differ in other parameters."""
     if found["kind"].nunique() > 1:
         raise CannotPlot(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
     others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
