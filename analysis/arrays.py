@@ -9,22 +9,15 @@ def numbers(name, value, shape=None, *, positive=False, least=None, most=None, w
     Parameters
     ----------
     name : str
-        Name of the argument, for messages.
+        Name of the argument, with which the line of a ValueError begins.
     value : array_like
         Numbers. Nothing missing (None, NA, masked values), no text, no True or False.
     shape : tuple, optional
         Length of each axis, None for any length; () for one number. Any shape if left out.
-    positive, whole : bool
-        Whether all must be above 0, and whole numbers.
-    least, most : float, optional
-        Bounds that are allowed themselves.
+    positive, least, most, whole : bool, float, float, bool
+        Whether all must be above 0, bounds that are allowed themselves, whether all must be whole numbers.
     gaps : bool
         Whether NaN and infinite values are allowed.
-
-    Raises
-    ------
-    ValueError
-        In one line, which begins with the name.
 
     Examples
     --------

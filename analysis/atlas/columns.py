@@ -43,12 +43,7 @@ COLUMNS = (
     Column("split", "", f"{FIT}, or {HELD_OUT}: drawn before any run, never fitted", "O"),
     Column("material", "", "material of the grains", "O"),
     Column("structure", "", "bcca, bpca, cpe or compressed", "O"),
-    Column(
-        "cell",
-        "",
-        "of compressed aggregates the cell they were cut out of: those of one cell are not independent; 0: none",
-        "i",
-    ),
+    Column("cell", "", "that compressed aggregates were cut out of: those of one are not independent; 0: none", "i"),
     Column("grains_target", "", "grains of the larger aggregate", "i"),
     Column("grains_projectile", "", "grains of the smaller one", "i"),
     Column("mass_ratio", "", "smaller over larger"),
@@ -61,30 +56,16 @@ COLUMNS = (
     *_of_bodies(AFTER),
     Column("fragment_index", "", "n of dN/dm ~ m^-n of all pieces but the largest", gaps=True),
     Column("fragment_index_error", "", "its standard error", gaps=True),
-    Column(
-        "restitution",
-        "",
-        "relative speed of the two largest pieces over that of the aggregates; 0 for one piece",
-        gaps=True,
-    ),
+    Column("restitution", "", "relative speed of the two largest pieces over that at the start; 0: one", gaps=True),
     Column("spin", "K(0)", "kinetic energy of the largest piece's rotation", gaps=True),
     Column("largest", "", "mass of the largest piece over the total"),
     Column("second", "", "of the second largest"),
     Column("pieces", "", "their number", "i"),
     Column("own", "", "of these two, the least part of a piece's mass that is of its own aggregate"),
     Column(
-        "lost_in_compression",
-        "",
-        "dissipated until the first largest compression, over K(0) and the potential energy released until then",
-        gaps=True,
+        "lost_in_compression", "", "dissipated until d_max, over K(0) and what adhesion released by then", gaps=True
     ),
-    Column(
-        "outcome",
-        "",
-        "by analysis/atlas/rules.py; undecided; never met: on straight ways they never touch, and the run was "
-        "cut short",
-        "O",
-    ),
+    Column("outcome", "", "by analysis/atlas/rules.py; undecided; never met: on straight ways they never touch", "O"),
     *(
         Column(f"{c.name}_at_end", "K(0)", f"{c.label}, change until the end (kinetic: what is left)")
         for c in CHANNEL_TABLE

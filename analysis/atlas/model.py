@@ -1,12 +1,8 @@
 """The model of the outcomes, fitted to the table of runs with scikit-learn.
 
-Model.probabilities  of the outcomes: logistic regression on polynomials of third order of the coordinates. Errors are
-                     the scatter of fits with random weights of the runs (the Bayesian bootstrap, Rubin 1981);
-                     undecided runs are in these alone, each time with one outcome or another.
-Model.touching       whether the aggregates touch at all
-Remains              what is left of them: means, and intervals that hold LEVEL of the runs
-
-Fitted are decided runs, but for the held-out ones, of all materials together.
+Probabilities of the outcomes are logistic regressions on polynomials of third order of the coordinates, fitted to
+decided runs, but for the held-out ones, of all materials together. Errors are the scatter of fits with random weights
+of the runs (the Bayesian bootstrap, Rubin 1981); undecided runs are in these alone, each time with an outcome drawn.
 """
 
 from functools import cached_property

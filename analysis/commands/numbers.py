@@ -40,7 +40,7 @@ def add_parsers(commands):
         "compare runs that have ended with their sums",
         "Read all files of each run and compare them with the SHA-256 that the run left of them; print what differs. "
         "`sha256sum -c ended` in a run folder does the same. Runs of versions before 0.5.0 have no sums.",
-        f"{RUNS}, a study's runs.csv, or a table of outcomes",
+        RUNS,
     )
 
 

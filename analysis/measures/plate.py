@@ -4,9 +4,10 @@ leaves it.
 Counted are the grains that belong to the aggregate at the start (fragments.belongs_to_an_aggregate). With f_on the
 fraction of their mass that is connected with the plate at the end, and f_off that of the heaviest piece that is not:
 
-    never met      no contact with the plate at any time sticking       f_on >= 0.9 bouncing       f_off >= 0.9,
-    whatever small part it has left on the plate fragmentation  everything else: what sticks then is the mass transfer
-    of laboratories, f_on
+    never met      no contact with the plate at any time
+    sticking       f_on >= 0.9
+    bouncing       f_off >= 0.9, whatever small part it has left on the plate
+    fragmentation  everything else: what sticks then is the mass transfer of laboratories, f_on
 
 The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the
 heaviest piece along that of the aggregate at the start, over the latter.

@@ -87,25 +87,9 @@ VALUES = 5  # that are listed, where runs differ
 
 
 def summarise(run):
-    """Numbers of one run.
-
-    Parameters
-    ----------
-    run : RunFolder
-
-    Returns
-    -------
-    dict
-        SI units, None for what a run does not have: run (path), ended, time (of the last sample), ended_by (what
-        ended a compression), d_max, t_max, restitution, outcome and what else OF_COLLISION lists, tensile_strength
-        and tensile_filling of a stretched compression, energy_closure, initial_kinetic_energy and every channel at
-        the end.
-
-    Raises
-    ------
-    RunFolderError
-        If a state is missing or damaged.
-    """
+    """Numbers of a RunFolder as a dict, in SI units, None for what it does not have: run (path), ended, time (of the
+    last sample), ended_by (what ended a compression), those of OF_COLLISION and OF_STRETCHING, energy_closure,
+    initial_kinetic_energy and every channel at the end. RunFolderError if a state is missing or damaged."""
     history, collision, compression = run.history, run.kind is COLLISION, run.kind is COMPRESSION
     numbers = {"run": str(run.path), "ended": run.ended, "time": float(history["time"][-1])}
     numbers["ended_by"] = run.record.get("endedBy")
@@ -154,12 +138,8 @@ def table(runs, structure=True):
         A row a run: run (the folder's name), the parameters of run.json that say something of the physics, what
         report.rows.MEASURED lists (outcome, largest piece, energies in J and over K(0), last values of the series), and
         folder (the path). All SI, NaN or None for what a run does not have. Units, meanings and the names of the
-        parameters are in .attrs["units"], .attrs["meanings"] and .attrs["parameters"].
-
-    Raises
-    ------
-    RunFolderError
-        If no run can be read; one that can't among others is left out with a warning.
+        parameters are in .attrs["units"], .attrs["meanings"] and .attrs["parameters"]. RunFolderError if no run can
+        be read; one that can't among others is left out with a warning.
     """
     measured, problems = measure(runs, lambda run: row(run, structure))
     if not measured:
@@ -171,19 +151,14 @@ def table(runs, structure=True):
 
 def measure(runs, of):
     """([(path, of(RunFolder))], [what is wrong with the others, one line each]) of runs as in table()."""
-    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else list(runs)
-    opened = {run.path.resolve(): run for run in several if isinstance(run, RunFolder)}
-    found = [(run, None) for run in opened.values()]
-    for path, problem in run_folders([path for path in several if not isinstance(path, RunFolder)]):
-        if problem or path.resolve() not in opened:
-            found.append((path, problem))
+    several = [runs] if isinstance(runs, (str, os.PathLike, RunFolder)) else runs
+    paths = [run.path if isinstance(run, RunFolder) else run for run in several]
     measured, problems = [], []
-    for run, problem in progress(found, "reading runs"):
+    for path, problem in progress(run_folders(paths), "reading runs"):
         try:
             if problem:
                 raise RunFolderError(problem)
-            run = run if isinstance(run, RunFolder) else open_run(run)
-            measured.append((run.path, of(run)))
+            measured.append((path, of(open_run(path))))
         except RunFolderError as error:
             problems.append(str(error))
     return measured, problems

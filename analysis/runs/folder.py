@@ -161,21 +161,8 @@ def _setting(name, value):
 
 
 def open_run(path):
-    """Read a run folder; a run that has not ended is read as far as it came.
-
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    RunFolder
-
-    Raises
-    ------
-    RunFolderError
-        when it is no run folder, has no history yet, or is damaged
-    """
+    """RunFolder of a path; a run that has not ended is read as far as it came. RunFolderError where there is no run
+    folder, or it has no history yet, or is damaged."""
     path = Path(path)
     if not path.is_dir():
         raise RunFolderError(f"{path}: " + ("is not a folder" if path.exists() else "no such run folder"))
@@ -184,7 +171,7 @@ def open_run(path):
     file_format, history = record["format"], path / HISTORY_FILE
     if not history.exists():
         raise RunFolderError(f"{history}: missing: the run has recorded no history yet")
-    name = record.get("kind", COLLISION.name)
+    name = str(record.get("kind", COLLISION.name))
     kind = RUN_KINDS[name] if name in RUN_KINDS else _kind_of_its_own(name, history)
     return RunFolder(
         path=path,
@@ -259,8 +246,6 @@ def _require_record(file, record):
     if record["format"] not in READABLE:
         known = ", ".join(map(str, READABLE[:-1])) + f" and {READABLE[-1]}"
         raise RunFolderError(f"{file}: format is {record['format']!r}, this analysis reads formats {known}")
-    if not isinstance(record.get("kind", ""), str):
-        raise RunFolderError(f"{file}: kind is {record['kind']!r}: must be a name, such as {COLLISION.name}")
     for key in ("parameters", "derived"):
         if not isinstance(record.get(key), dict):
             raise RunFolderError(f"{file}: '{key}' is missing or not an object")
