@@ -87,7 +87,7 @@ YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_RE
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
                     -DOMPI_SKIP_MPICXX -isystem /usr/lib/$(PROCESSOR)-linux-gnu/openmpi/include
 endif
-YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE),-Icontact_law/yade_interface)
+YADE_HEADERS = $(if $(YADE_INCLUDE),-isystem $(YADE_INCLUDE))
 YADE_FLAGS = $(FLAGS) $(YADE_DEFINITIONS) $(YADE_HEADERS) -isystem /usr/include/eigen3 -isystem /usr/include/python$(PYTHON_VERSION)
 
 # Files of the engine see no YADE type. In those with an instruction set in their name products and sums are contracted (-ffp-contract=fast), which
@@ -146,8 +146,8 @@ $(YADE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp $(PRECOMPILED).gch bui
 	$(call COMPILE,$(YADE_CXX) $(YADE_FLAGS) -include $(PRECOMPILED) -c $<)
 $(ENGINE_OBJECTS): $(OBJECTS_FOLDER)/%.o: contact_law/%.cpp build/flags.list
 	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) $(INSTRUCTIONS) -c $<)
-$(PRECOMPILED).gch: $(INTERFACE)/declare/precompiled.hpp build/flags.list
-	$(call COMPILE,cp $< $(PRECOMPILED) && $(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED))
+$(PRECOMPILED).gch: $(INTERFACE)/yade.hpp build/flags.list
+	$(call COMPILE,echo '#include "$(CURDIR)/$<"' > $(PRECOMPILED) && $(YADE_CXX) $(YADE_FLAGS) -x c++-header $(PRECOMPILED))
 
 # The commit, and what the plugin is compiled for, go into one object.
 $(OBJECTS_FOLDER)/yade_interface/plugin.o: build/commit.list build/yade.list

@@ -3,7 +3,6 @@
 #include "../kernel/bond.hpp"
 #include "../kernel/blocked.hpp"
 #include "Refusal.hpp"
-#include <core/Body.hpp>
 #include <limits>
 #include <sstream>
 

@@ -5,12 +5,6 @@
 #include "../kernel/contact_step.hpp"
 #include "EnergyChannels.hpp"
 #include "SceneShapes.hpp"
-#include <core/Interaction.hpp>
-#include <core/Scene.hpp>
-#include <core/Dispatching.hpp>
-#include <pkg/common/ElastMat.hpp>
-#include <pkg/common/NormShearPhys.hpp>
-#include <pkg/dem/ScGeom.hpp>
 #include <cstring>
 
 namespace yade {

@@ -3,7 +3,6 @@
 #include "../engine/contacts.hpp"
 #include "EnergyChannels.hpp"
 #include "SceneGrains.hpp"
-#include <core/GlobalEngine.hpp>
 #include <boost/python.hpp>
 #include <memory>
 #include <mutex>

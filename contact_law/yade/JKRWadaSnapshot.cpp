@@ -1,9 +1,6 @@
 #include "JKRWadaEngine.hpp"
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"
-#include <core/Body.hpp>
-#include <core/Omega.hpp>
-#include <pkg/common/Sphere.hpp>
 #include <algorithm>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // One line for what the fused engine cannot do, and numbers in it; and how a refusal reaches Python.
 #pragma once
 #include "../engine/shared_state.hpp"
-#include <core/Omega.hpp>
+#include "../yade_interface/yade.hpp"
 #include <chrono>
 #include <cstdio>
 #include <future>

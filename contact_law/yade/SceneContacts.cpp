@@ -1,8 +1,6 @@
 #include "SceneContacts.hpp"
 #include "Refusal.hpp"
 #include "SceneShapes.hpp"
-#include <core/Body.hpp>
-#include <pkg/common/Sphere.hpp>
 #include <algorithm>
 #include <map>
 

@@ -2,7 +2,6 @@
 #include "../engine/contacts.hpp"
 #include "Refusal.hpp"
 #include "SceneGrains.hpp"
-#include <core/GlobalEngine.hpp>
 #include <algorithm>
 #include <cmath>
 

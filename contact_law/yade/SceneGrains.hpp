@@ -4,10 +4,6 @@
 #include "../engine/dynamics.hpp"
 #include "JKRWada.hpp"
 #include "Refusal.hpp"
-#include <core/Body.hpp>
-#include <core/Scene.hpp>
-#include <pkg/common/Sphere.hpp>
-#include <pkg/common/Wall.hpp>
 #include <vector>
 
 namespace yade {

@@ -1,8 +1,5 @@
 #include "SceneShapes.hpp"
 #include "SceneContacts.hpp"
-#include <core/Body.hpp>
-#include <pkg/common/Sphere.hpp>
-#include <pkg/common/Wall.hpp>
 #include <mutex>
 #include <thread>
 

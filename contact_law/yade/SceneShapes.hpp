@@ -1,15 +1,12 @@
 // What contacts can be made: those of spheres with each other and with planes (Wall). Everything else is refused, by functors and fused
 // engine.
 #pragma once
-#include <core/Scene.hpp>
+#include "../yade_interface/yade.hpp"
 #include <atomic>
 #include <mutex>
 #include <string>
 
 namespace yade {
-
-class Body;
-class Wall;
 
 // What is done once in each step of a scene, by whichever of InteractionLoop's threads comes first; the others wait for it.
 class OncePerStep {

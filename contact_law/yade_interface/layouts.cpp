@@ -1,14 +1,6 @@
 /* Where YADE's objects hold what the plugin reads and writes, in bytes: the same in the described versions 2023.02a, 2025.2.0 and 2026.1.0.
  * An ordinary build holds the declarations of this folder to these numbers; `make yade-tree` holds the headers of YADE's own source to them. */
-#include <core/Dispatching.hpp>
-#include <core/GlobalEngine.hpp>
-#include <core/Interaction.hpp>
-#include <core/Scene.hpp>
-#include <pkg/common/ElastMat.hpp>
-#include <pkg/common/NormShearPhys.hpp>
-#include <pkg/common/Sphere.hpp>
-#include <pkg/common/Wall.hpp>
-#include <pkg/dem/ScGeom.hpp>
+#include "yade.hpp"
 #include <cstddef>
 #include <pthread.h>
 

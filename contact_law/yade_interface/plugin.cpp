@@ -1,6 +1,6 @@
 // How the plugin enters YADE: the check that comes before any of its classes, and the functions that contact_law/__init__.py calls.
 #include "../kernel/energy_channels.hpp"
-#include <core/Omega.hpp>
+#include "yade.hpp"
 #include <iostream>
 #include <sstream>
 
