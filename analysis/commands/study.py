@@ -39,6 +39,7 @@ def add_parsers(commands):
 
 def study(options):
     # pandas and scipy take a moment to load, and the parser does without them.
+    from ..studies.comparison import counted, of_table, text_table
     from ..studies.gather import gather
     from ..studies.study import NAMES, find
 
@@ -61,10 +62,15 @@ def study(options):
     runs = chosen.runs(found.table)
     rows = [row for row in chosen.rows(runs) if row.printed or row.word != "not run"]
     written = _write(options, chosen, found, runs, rows) if options.figures or options.page else None
-    text = _text(options.format, chosen, found, rows).rstrip("\n")
-    print(text if options.format == "csv" else printable_lines(text))
-    if written and options.format == "text":
-        print(printable(f"written: {written}"))
+    if options.format == "csv":
+        print(found.csv(chosen), end="")
+    elif options.format == "json":
+        records = json.loads(of_table(rows).to_json(orient="records", double_precision=15))
+        print(json.dumps({"study": chosen.name, "runs": len(found.table), "rows": records}, indent=1))
+    else:
+        print(printable_lines(f"{text_table(rows)}\n{counted(rows)}".rstrip("\n")))
+        if written:
+            print(printable(f"written: {written}"))
     return FAILED if found.problems else 0
 
 
@@ -85,18 +91,6 @@ def _require_places(options, study):
 def _is_only_input(table, runs):
     """Whether a table is all that is read: then it stays as it is."""
     return [os.path.realpath(path) for path in runs] == [os.path.realpath(table)]
-
-
-def _text(kind, study, found, rows):
-    from ..studies.comparison import counted, of_table, text_table
-
-    if kind == "csv":
-        return found.csv(study)
-    if kind == "json":
-        records = json.loads(of_table(rows).to_json(orient="records", double_precision=15))
-        answer = {"study": study.name, "runs": len(found.table), "rows": records}
-        return json.dumps(answer, indent=1, ensure_ascii=False)
-    return f"{text_table(rows)}\n{counted(rows)}"
 
 
 def _write(options, study, found, runs, rows):

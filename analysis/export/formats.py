@@ -17,7 +17,6 @@ from ..runs.files import make_folder, replacing, write_file
 from .fields import CONTACTS, exported_states, grain_fields
 
 _VTK_TYPES = {"f": ("Float64", "<f8"), "i": ("Int64", "<i8"), "u": ("Int64", "<i8"), "b": ("Int64", "<i8")}
-_XYZ_TYPES = {"f": "R", "i": "I", "u": "I"}
 _XYZ_NAMES = {"v": "velo"}  # where the format has a word of its own for a field
 SPECIES = "X"  # no element
 
@@ -143,8 +142,12 @@ def write_xyz(run, folder):
 def _write_frame(out, exported):
     state = exported.state
     columns = {"pos": state.position, **grain_fields(exported)}
-    properties = ":".join(["species:S:1", *(_property(name, array) for name, array in columns.items())])
-    words = [f"Properties={properties}", f"Time={state.time!r}"]
+    properties, formats = ["species:S:1"], [SPECIES]
+    for name, array in columns.items():
+        width, is_whole = array[0].size, array.dtype.kind in "iu"
+        properties.append(f"{_XYZ_NAMES.get(name, name)}:{'I' if is_whole else 'R'}:{width}")
+        formats += ["%d" if is_whole else "%.17g"] * width
+    words = [f"Properties={':'.join(properties)}", f"Time={state.time!r}"]
     if state.cell_size is None:
         words.append('pbc="F F F"')
     else:
@@ -154,14 +157,4 @@ def _write_frame(out, exported):
         words += [f'Lattice="{edges}"', f'pbc="{periodic}"']
     out.write(f"{len(state.radius)}\n{' '.join(words)}\n".encode("ascii"))
     table = np.hstack([np.asarray(array, dtype=float).reshape(len(state.radius), -1) for array in columns.values()])
-    np.savetxt(out, table, fmt=f"{SPECIES} " + " ".join(_formats(columns)))
-
-
-def _property(name, array):
-    return f"{_XYZ_NAMES.get(name, name)}:{_XYZ_TYPES[array.dtype.kind]}:{1 if array.ndim == 1 else array.shape[1]}"
-
-
-def _formats(columns):
-    """printf's format of every number of a line."""
-    for array in columns.values():
-        yield from ["%d" if array.dtype.kind in "iu" else "%.17g"] * (1 if array.ndim == 1 else array.shape[1])
+    np.savetxt(out, table, fmt=" ".join(formats))

@@ -214,7 +214,7 @@ def read_record(path):
 
 def read_state(file, kind=COLLISION, file_format=READABLE[-1], sha256=None):
     """State in one states/NNNNNN.npz; RunFolderError when it is missing, damaged or inconsistent."""
-    arrays = read_quantities(Path(file), kind.states, file_format, sha256)
+    arrays = read_quantities(Path(file), STATE, file_format, sha256)
     grains, pairs, aggregate = len(arrays["radius"]), arrays["contact_pairs"], arrays["aggregate"]
     if grains == 0:
         raise RunFolderError(f"{file}: holds no grain")

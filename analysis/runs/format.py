@@ -101,12 +101,11 @@ class Quantity:
 
 @dataclass(frozen=True)
 class RunKind:
-    """A kind of run, by the `kind` of run.json: what its history and its states hold beside what every run has, and how
-    many aggregates there are (their numbers are 0, 1, ...; None: any number)."""
+    """A kind of run, by the `kind` of run.json: what its history holds beside what every run has, and how many
+    aggregates there are (their numbers are 0, 1, ...; None: any number)."""
 
     name: str
     series: tuple
-    state: tuple = ()
     aggregates: int | None = None
 
     @property
@@ -115,11 +114,6 @@ class RunKind:
         mode (where there were bonds at the start), the kind's own."""
         channels = (Quantity(c.name, ("T",), "J", c.label, since=c.since) for c in CHANNEL_TABLE)
         return (TIME_SERIES, *channels, CONTACTS, *BONDS, *self.series)
-
-    @property
-    def states(self):
-        """Quantities of a state."""
-        return STATE + self.state
 
 
 TIME_SERIES = Quantity("time", ("T",), "s", "time, rising")

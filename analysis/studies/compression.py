@@ -75,7 +75,7 @@ def _spanned_from(run):
     inf where the densest does not, NaN without states."""
     found = float("inf") if len(run.states) else float("nan")
     last = run.history["time"][cells.compressing(run.history)][-1]
-    for state in (run.states[k] for k in reversed(range(len(run.states)))):
+    for state in reversed(run.states):
         if state.time > last * ROUNDING:
             continue
         if state.cell_size is None or spanned_axes(state.position, state.contact_pairs, state.cell_size) < 3:

@@ -6,6 +6,7 @@ from math import nan
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.special import digamma
 
 from ..figures.style import PAPER
 from ..measures.outcome import STICKING, UNDECIDED
@@ -16,7 +17,7 @@ from . import columns
 from .columns import Column, constant, group, one, parameter
 from .comparison import Row
 from .compressed import COMPACT, HEAD_ON_ICE, largest_compression
-from .estimates import Estimate, beside, estimate, estimates, exponent, fraction, mean, smoothed_scatter, where
+from .estimates import Estimate, beside, estimate, estimates, exponent, fraction, mean, where
 from .figures import curves, snapshots
 from .study import GALLERY, Study
 
@@ -136,6 +137,23 @@ def size_line(runs):
         return [nan] * 5
     c1, intercept = np.polyfit(runs.radius, runs.d, 1)
     return c1, -intercept, -intercept / (2.0 - c1), 2.0 * c1, 60.0 * c1 + intercept
+
+
+def smoothed_scatter(x, scatter, number):
+    """Standard deviations (K,) of one run that follow a power of x, from each point's own (K,), x (K,) and the number
+    of runs (K,): ln s^2 against ln x by least squares, weighted with the degrees of freedom and freed of its bias
+    (digamma). A constant for less than four points; NaN without any point of two runs.
+
+    Weights 1/s^2 of three runs each would vary by orders of magnitude by chance alone."""
+    # A point of two equal numbers has no logarithm.
+    known = (number > 1) & (scatter > 0)
+    if not known.any():
+        return np.full(len(scatter), np.nan)
+    freedom = number[known] - 1.0
+    log = 2.0 * np.log(scatter[known]) - digamma(freedom / 2.0) + np.log(freedom / 2.0)
+    x = np.log(x)
+    degree = 1 if known.sum() >= 4 and np.ptp(x[known]) > 0 else 0
+    return np.exp(0.5 * np.polyval(np.polyfit(x[known], log, degree, w=np.sqrt(freedom)), x))
 
 
 def fit_moduli(runs, offset, start=START):

@@ -8,7 +8,7 @@ import numpy as np
 from yade.wrapper import JKRWadaEngine, Omega
 
 import contact_law
-from analysis.runs.format import BROKEN_BONDS, CHANNEL_TABLE, CHANNELS, WORK
+from analysis.runs.format import BROKEN_BONDS, CHANNEL_TABLE, CHANNELS, STATE, WORK
 
 SECONDS_BETWEEN_WRITES = 10
 LARGEST_LEDGER_ERROR = 0.1  # of the energies at the start and the work done since: beyond, a run isn't worth its time
@@ -43,7 +43,7 @@ class Recorder:
 
     def __init__(self, folder, schedule, kind_format, scene):
         self.folder, self.schedule, self.scene = folder, schedule, scene
-        self.history, self.states = kind_format.history, kind_format.states
+        self.history, self.states = kind_format.history, STATE
         self.columns = None  # until the first sample, or those of the checkpoint
         self.error = None
         self.ending = self.finished = False
