@@ -152,15 +152,12 @@ def read_outcomes(path):
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
         axes = tuple(_axis(next(rows)) for _ in range(int(next(rows)[0])))
-        number, columns = int(next(rows)[0]), tuple(next(rows))
-        if len(columns) != number:
-            raise OutcomeTableError(f"{len(columns)} names of columns; must be {number}")
+        _, columns = next(rows), tuple(next(rows))
         values = np.array([[float(word) for word in row] for row in rows])
         values = values.reshape(*(len(axis.nodes) for axis in axes), len(columns))
-    except OutcomeTableError as error:
-        raise OutcomeTableError(f"{path}: {error}") from None
-    except (StopIteration, IndexError, ValueError):  # words where numbers must be, or an end too early
-        raise OutcomeTableError(f"{path}: must be a table of outcomes, as write_outcomes() makes it") from None
+    except (StopIteration, IndexError, ValueError) as error:  # words where numbers must be, or an end too early
+        must = "must be a table of outcomes, as write_outcomes() makes it"
+        raise OutcomeTableError(f"{path}: {must}: {error}") from None
     if INSIDE not in columns or not np.isfinite(values).all():
         raise OutcomeTableError(f"{path}: must have a column `{INSIDE}`, and numbers everywhere")
     return OutcomeTable(axes, columns, values, comments)
@@ -171,7 +168,7 @@ def _axis(words):
     nodes = np.array([float(word) for word in words[3 : 3 + number]])
     if scale not in SCALES or len(nodes) != number or number < 2 or np.any(np.diff(nodes) <= 0.0) or nodes[0] < 0.0:
         must = "2 or more, increasing, log10 or linear"
-        raise OutcomeTableError(f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be {must}")
+        raise ValueError(f"axis {name}: {scale}, {len(nodes)} of {number} nodes; must be {must}")
     return Axis(name, scale, nodes)
 
 

@@ -70,11 +70,6 @@ def outcome(
         data and less where the values are extrapolated, at 0 those of the nearest data; below 1/2 errors and intervals
         are NaN. Intervals (`largest_low`, ...), with an impact parameter, are of runs that leave more than one piece:
         `largest`, of all runs, may be outside.
-
-    Raises
-    ------
-    ValueError
-        In one line.
     """
     if structure not in STRUCTURES:
         raise ValueError(f"structure = {structure}: must be {' or '.join(STRUCTURES)}")

@@ -21,7 +21,6 @@ ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
 AXES = {"x": (1, 2, 0), "y": (0, 2, 1), "z": (0, 1, 2)}  # to the right, up, towards the viewer (but y: away)
 _NARROWEST = 480  # pixels, for the legend
 _TALLEST = 9 / 8  # over the width
-_FASTEST_GIF = 50  # frames a second that all programs show
 _MARGIN = 2.0  # grain radii
 _H264 = ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "18"]
 _GIF = ["-vf", "split[a][b];[a]palettegen=64[p];[b][p]paletteuse=dither=none", "-loop", "0"]
@@ -41,8 +40,6 @@ def write_film(run, file, frames_per_second=10, width=960, along="z", colour="ag
     one of grain_colours.COLOURINGS. NoFilm if ffmpeg is missing or fails, RunFolderError without a whole state."""
     if file.suffix not in ENDINGS:  # before the frames are drawn
         raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
-    if file.suffix == ".gif" and frames_per_second > _FASTEST_GIF:
-        raise NoFilm(f"{file}: {frames_per_second:g} frames a second; of a .gif must be {_FASTEST_GIF} at most")
     require_output(file)
     axes = list(AXES[along])
     view = _view(run, axes)

@@ -18,8 +18,8 @@ DEPTH = 0.25  # of the zone of zone_filling(), in radii of the aggregate
 
 
 def grains_within(position, distance, cell_size=None, origins=None):
-    """Mean number of grains, itself and images included, nearer than a distance to a grain: N(r < r_in), K13 section
-    3.6.
+    """Mean number of grains, itself and images included, nearer than a distance (any shape) to a grain: N(r < r_in),
+    K13 section 3.6.
 
     Parameters
     ----------
@@ -30,16 +30,10 @@ def grains_within(position, distance, cell_size=None, origins=None):
     origins : int, optional
         At most so many grains, evenly chosen, are taken as centres.
 
-    Returns
-    -------
-    array in the shape of distance
-
     Examples
     --------
     >>> grains_within([[0.0, 0, 0], [1, 0, 0]], [0.5, 1.5]).tolist()
     [1.0, 2.0]
-    >>> grains_within([[0.0, 0, 0]], [1.5], [1.0] * 3).tolist()
-    [19.0]
     """
     position, distance = _points(position), numbers("distance", distance, least=0)
     shifts = [np.zeros(3)]

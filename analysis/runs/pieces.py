@@ -56,8 +56,6 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
     of_projectile = np.zeros(len(radius), dtype=bool)
     if aggregate is not None:
         of_projectile = numbers("aggregate", aggregate, radius.shape, least=0, whole=True) == 1
-    if cell_size is not None:
-        numbers("cell_size", cell_size, (3,), positive=True)
     contacts = np.bincount(labels[contact_pairs[:, 0]], minlength=len(sizes))
     order, ends = np.argsort(labels, kind="stable"), np.cumsum(sizes)
     of_pieces = np.split(order, ends[:-1])

@@ -40,7 +40,8 @@ def state(folder):
     run = run_of(folder)
     status = status_of(run)
     if os.path.exists(os.path.join(folder, ENDED_FILE)):
-        return State(DONE, 1.0, _spent(folder, run)) if run else State(FAILED, note=f"ended, but {damage(folder)}")
+        problems = _wrong(read_record, folder)
+        return State(FAILED, note=f"ended, but {problems[0]}") if problems else State(DONE, 1.0, _spent(folder, run))
     if lock:
         return running(folder, run, lock)
     progress, spent = progress_of(folder, run), _spent(folder, run)
@@ -93,11 +94,6 @@ def run_of(folder):
     except RunFolderError:
         return {}
     return run if isinstance(run, dict) else {}
-
-
-def damage(folder):
-    """What is wrong with a run folder's run.json, for which run_of() gives {}; one line."""
-    return next(iter(_wrong(read_record, folder)), f"{os.path.join(folder, RUN_FILE)}: not the record of a run")
 
 
 def changed(path):

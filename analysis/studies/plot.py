@@ -44,11 +44,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     Returns
     -------
     matplotlib.figure.Figure
-
-    Raises
-    ------
-    CannotPlot
-        A ValueError, also if runs differ in parameters beside x, by, the seed and the files.
+        CannotPlot (a ValueError) also if runs differ in parameters beside x, by, the seed and the files.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
     attributes, where = found.attrs, where or {}

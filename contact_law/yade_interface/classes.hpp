@@ -233,7 +233,7 @@ namespace serialization {
 
 // The two roles after the text are those that YADE's documentation shows.
 #define YADE_INTERFACE_VISIT_(r, Class, a)                                                                                                 \
-	visit(::yade::attributes::Attribute<&Class::YADE_INTERFACE_NAME_(a), ::yade::Attr::join(BOOST_PP_TUPLE_ELEM(5, 3, a))> {               \
+	visit(::yade::attributes::Attribute<&Class::YADE_INTERFACE_NAME_(a), ::yade::Attr::join(BOOST_PP_TUPLE_ELEM(5, 3, a))> {           \
 	        BOOST_PP_STRINGIZE(YADE_INTERFACE_NAME_(a)),                                                                               \
 	                BOOST_PP_TUPLE_ELEM(5, 4, a) " :ydefault:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_DEFAULT_(a)) "` :yattrtype:`" BOOST_PP_STRINGIZE(YADE_INTERFACE_TYPE_(a)) "`" });
 
@@ -421,4 +421,3 @@ SAVED_BY_YADE(Serializable)
 #define YADE_CLASS_BASE_DOC_ATTRS(Class, Base, doc, attributes) YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributes, , )
 #define YADE_CLASS_BASE_DOC_ATTRS_CTOR(Class, Base, doc, attributes, constructor)                                                          \
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Class, Base, doc, attributes, constructor, )
-
