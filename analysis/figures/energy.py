@@ -6,8 +6,7 @@ from ..measures.periodic_cell import AVERAGED, pressure_over, work_on_boundaries
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, HISTORY_FILE, LABELS, WORK
 from ..runs.ledger import closure, closure_history, fractions
-from ..theory.aggregates import bcca_coordination
-from ..theory.compression import compressive_strength, compressive_strength_dense, strength_scale
+from ..theory.aggregates import bcca_coordination, compressive_strength, compressive_strength_dense, strength_scale
 from .style import NANO, OURS, PAPER, legend, letter, new_figure, panels, run_title, styled
 
 

@@ -11,7 +11,7 @@ from ..measures.network import spanned_axes
 from ..measures.structure import fractal_dimension, grains_within
 from ..runs.format import COMPRESSION, LOST_CHANNELS
 from ..runs.ledger import work_closure
-from ..theory import compression as theory
+from ..theory import aggregates as theory
 from .columns import GRAINS, MATERIAL, OF_GRAINS, Column, NotMeasured, constant, grains_text, group, parameter
 from .comparison import Row
 from .estimates import beside, estimate, exponent, mean, where

@@ -1,7 +1,7 @@
 """Theory in closed form, written from the papers alone: nothing here comes from the simulation code.
 
 Two grains: jkr, pair_constants, bonds, sticking (names below). Aggregates: andrews (two elastoplastic spheres),
-aggregates and compression (elastic constants, coordination, strength).
+aggregates (elastic constants, coordination, strength).
 
 A22 = Arakawa et al. 2022 (viscous dissipation), A24 = Arakawa et al. 2024 (elastoplastic collisions), K13 = Kataoka
 et al. 2013, S17 = Sirono & Ueno 2017 (sintered aggregates).

@@ -10,7 +10,7 @@ from analysis.runs.format import COMPRESSION
 from analysis.studies import compression as k13
 from analysis.studies.estimates import estimate, mean, where
 from analysis.theory import SILICATE
-from analysis.theory.compression import rolling_energy
+from analysis.theory.aggregates import rolling_energy
 
 GRAINS = 512
 SCALE, EDGES = 4.7374e5, ("edge_x", "edge_y", "edge_z")

@@ -11,8 +11,8 @@ from scipy.integrate import quad, solve_ivp
 from analysis import theory
 from analysis.studies.elastoplastic import PRINTED
 from analysis.theory import aggregates
+from analysis.theory.aggregates import *
 from analysis.theory.bonds import stretching_period
-from analysis.theory.compression import *
 from analysis.theory.jkr import PULL_OFF_OVERLAP
 
 PAIR = theory.pair_constants(theory.ICE, 1e-7)

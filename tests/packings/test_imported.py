@@ -15,7 +15,7 @@ from written_runs import losing, record, state_arrays, write_run
 from analysis.export.formats import poly_data
 from analysis.measures.fragments import fragment_labels
 from analysis.runs.files import npz
-from analysis.theory.compression import rolling_energy
+from analysis.theory.aggregates import rolling_energy
 from yade_scripts import packings
 from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import MATERIALS, equilibrium_overlap
