@@ -48,6 +48,7 @@ def rows(table, head="", row="{}", separator=" "):
 DATA = "made by hand\n\n{n} atoms\n1 atom types\n\n-9 9 xlo xhi\n-9 9 ylo yhi\n-9 9 zlo zhi\n\nAtoms # sphere\n\n"
 DUMP = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS pp pp pp\n-9 9\n-9 9\n-9 9\n"
 VTK = "# vtk DataFile Version 3.0.\nof YADE\nASCII\n\nDATASET POLYDATA\nPOINTS {n} double\n"
+BOX = np.array([[-0.07, 3.13], [0.21, 3.41], [-0.33, 2.87]])  # um, in which aggregates are cut by its sides
 PROPERTIES = "{n}\nProperties=species:S:1:pos:R:3:velo:R:3:radius:R:1 Time=0.5\n"
 
 
@@ -60,6 +61,18 @@ def vtp(t):
     return poly_data(t[:, :3].astype(float), {"mass": np.ones(len(t)), "radius": t[:, 3].astype(float)})
 
 
+def wrapped(t, row, columns, scaled=False):
+    """A periodic dump: positions within BOX, or fractions of it, and how many boxes grains have left."""
+    low, edges = BOX[:, 0], np.ptp(BOX, axis=1)
+    position = t[:, :3].astype(float)
+    boxes = np.floor((position - low) / edges).astype(int)
+    inside = position - boxes * edges
+    texts = np.vectorize(repr)((inside - low) / edges if scaled else inside)
+    bounds = "".join(f"{low} {high}\n" for low, high in BOX)
+    head = DUMP.replace("-9 9\n" * 3, bounds) + f"ITEM: ATOMS {columns}\n"
+    return rows(np.column_stack([texts, t[:, 3], boxes.astype(str)]), head, row)
+
+
 def yaml_of(t):
     about = {"n_particles": len(t), "length_unit": "1", "positions": t[:, :3].astype(float).tolist()}
     return yaml.dump({"aggregate": {**about, "radii": t[:, 3].astype(float).tolist()}}, sort_keys=False)
@@ -70,12 +83,20 @@ FORMATS = {
     "csv": lambda t: rows(t, "x,y,z,radius\n", separator=","),
     "csv of ParaView": lambda t: rows(t, '"radius","Points:0","Points:1","Points:2"\n', "{4},{1},{2},{3}"),
     "csv without names": lambda t: rows(t, separator=", "),
-    "xyz": lambda t: rows(t, "{n}\na line\n", "Si {}"),
+    "csv of Excel": lambda t: rows(np.char.replace(t, ".", ","), "X;Y;Z;Radius\n", separator=";"),
+    "csv of pandas": lambda t: rows(t, "   x y z radius\n", "{i} {}"),
+    "Fortran": lambda t: rows(np.char.add(t, "D+00"), "! about the x y z axes\n"),
+    "OVITO": lambda t: rows(t, '# "Particle Identifier" "Position.X" "Position.Y" "Position.Z" "Radius"\n', "{i} {}"),
+    "xyz": lambda t: rows(t, "{n}\n{n} atoms\n", "Si {}"),
     "xyz, two frames": lambda t: "2\nfirst\nC 0 0 0\nC 9 9 9\n" + rows(t, "{n}\nlast\n", "C {}"),
     "extended xyz": lambda t: rows(t, PROPERTIES, "X {1} {2} {3} 0 0 0 {4}"),
     "LAMMPS data": lambda t: rows(twice(t), DATA, "{i} 1 {4} 1000 {1} {2} {3} 0 0 0")
     + "\nVelocities\n\n1 0 0 0 0 0 0\n",
     "LAMMPS dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id type xu yu zu radius\n", "{i} 1 {}"),
+    "LAMMPS dump, scaled": lambda t: wrapped(t, "{i} 1 {}", "id type xs ys zs radius ix iy iz", scaled=True),
+    "LAMMPS dump, first frame empty": lambda t: DUMP.format(n=0)
+    + "ITEM: ATOMS id x y z radius\n"
+    + rows(t, DUMP + "ITEM: ATOMS id x y z radius\n", "{i} {}"),
     "DustCollider, dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id mol type x y z radius\n", "{i} 0 1 {}"),
     "legacy VTK": legacy_vtk,
     "XML of VTK": vtp,
@@ -118,6 +139,18 @@ def test_a_round_trip_gives_the_same_contacts(tmp_path, form, decimals):
         assert np.abs(back.position - packings.centred(packing.position, packing.radius)).max() < 0.05 * RADIUS
 
 
+def test_an_aggregate_that_a_periodic_box_cuts_is_whole(tmp_path):
+    packing = ours("bpca")
+    table = np.vectorize(lambda x: f"{x:.5f}")(np.column_stack([packing.position, packing.radius]) * 1e6)
+    (tmp_path / "a").write_text(wrapped(table, "{i} {1} {2} {3} {4}", "id x y z radius"))
+    back, lines = imported(str(tmp_path / "a"), dict(unit="um"))
+    assert "periodic" in lines[0] and pairs_of(back) == pairs_of(packing)
+    through = np.array([[repr(0.2 * i), "1", "1", "0.1"] for i in range(16)])
+    (tmp_path / "b").write_text(wrapped(through, "{i} {1} {2} {3} {4}", "id x y z radius"))
+    with refused(packings.PackingError, "touch their own images"):
+        imported(str(tmp_path / "b"), dict(unit="um", pieces="largest"))
+
+
 def touching_at_the_sum_of_radii(name):
     return make(AggregateParameters.parse(OURS[name]), 1e-9 * OVERLAP, 0)
 
@@ -148,7 +181,10 @@ UM = dict(unit="um", radius="0.1")
 WRONG = [
     (LINE.replace("0.2", "nan"), UM, "position: must be "),
     ("x,y\n0,0\n0.2,0\n", UM, "no z among its columns x, y"),
-    (LINE, dict(UM, radius="0.09"), "in 2 pieces of 1, 1 grains"),
+    (LINE, dict(UM, radius="0.09"), "in 2 pieces of 1, 1 grains, up to 0.223 radii of the smallest apart"),
+    ("x [nm],y [nm],z [nm]\n0,0,0\n0.2,0,0\n", UM, "must be left out"),
+    ("# lengths in nm\n0 0 0\n0.2 0 0\n", UM, "must be left out"),
+    ("# x y z\n0 0 0 7 7\n0.2 0 0 7 7\n", UM, "columns without a name"),
     (LINE, dict(radius="0.1"), "as with unit=cm or unit=mm or unit=um"),
     (DATA.format(n=9) + "1 1 0.2 1 0 0 0\n", dict(unit="um"), "1 rows of numbers; must be 9"),
     (BIPYRAMID, dict(unit="radius"), "cannot be brought to rest together: grains 0 and 1"),

@@ -7,6 +7,9 @@ gap between them is within what the digits hide; then all are moved as little as
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
 from yade_scripts import materials
@@ -21,6 +24,7 @@ from yade_scripts.parameters import POSITIVE, Check, ParameterError, one_line, o
 OF_RADIUS = "radius"
 SMALLEST, LARGEST = 1e-9, 1e-3  # m: radii of grains
 SMALLEST_GAP, LARGEST_GAP = 1e-4, 0.05  # grain radii: within these a tolerance follows from the digits of the file
+LARGEST_TOLERANCE = 0.5  # radii of the smallest grain
 DEEPEST_OVERLAP = 0.1  # grain radii beyond that at rest, as under pressure; deeper ones have another radius or unit
 LARGEST_PIECE = "largest"
 
@@ -40,7 +44,7 @@ class ImportParameters(GrainParameters):
     )
     tolerance: float | None = parameter(
         None,
-        Check("> 0 and at most 0.5", lambda x: 0 < x <= 0.5),
+        Check(f"> 0 and at most {LARGEST_TOLERANCE:g}", lambda x: 0 < x <= LARGEST_TOLERANCE),
         f"gap up to which grains touch (what the digits of the file hide, {SMALLEST_GAP:g} to {LARGEST_GAP:g})",
         "radii of the smallest grain",
     )
@@ -55,12 +59,16 @@ def imported(path, texts):
     is given. Raises ParameterError and PackingError."""
     parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
-    position, radius, tolerance = _in_metres(path, spheres, parameters, "grainRadius" in texts)
+    position, radius, tolerance, cell = _in_metres(path, spheres, parameters, "grainRadius" in texts)
     grain_radius = float(np.sort(radius)[len(radius) // 2])  # by which they are known
     parameters = parameters.changed(grainRadius=grain_radius)
     constants = materials.pair_constants(parameters)
     materials.require_small_contacts(constants)
     overlap = constants["equilibriumOverlap"]
+    wanted, lines = parameters.pieces, []
+    if cell is not None and len(_pieces(position, radius, tolerance)) != wanted:
+        position, across = unwrapped(path, position, radius, tolerance, cell)
+        lines = [f"{path}: periodic; {across} grains were put back beside those that they touch across the box"]
     pairs = _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap)
     rested, at_end, deviation = at_rest(position, radius, pairs, grain_radius, overlap)
     if np.abs(deviation).max(initial=0.0) > DEEPEST - 1:
@@ -74,21 +82,21 @@ def imported(path, texts):
     about |= {"tolerance": tolerance, "largestMotion": moved}
     about |= {name: getattr(parameters, name) for name in OF_CONTACTS}
     packing = Packing(centred(rested, radius), radius, 0, about)
-    lines = [
+    lines += [
         f"{path}: {spheres.about}, {len(radius)} grains; those touch that are at most "
         f"{tolerance / radius.min():.2g} radii of the smallest apart: {len(pairs)} contacts",
         f"brought to rest: grains moved by up to {moved / grain_radius:.2g} grain radii, contacts are within "
         f"{np.abs(deviation).max(initial=0.0):.1g} of their overlap at rest, "
         f"{len(at_end) - len(pairs)} more came about",
     ]
-    wanted = parameters.pieces
     if wanted == LARGEST_PIECE:
         return largest_piece(packing), lines
     sizes = fragment_sizes(fragment_labels(packing.grains, contacts(packing)))
     if len(sizes) != wanted:
         shown = ", ".join(map(str, sizes[:4])) + (", ..." if len(sizes) > 4 else "")
+        one = f", {_apart(position, radius)}" if len(sizes) > 1 else ""
         raise PackingError(
-            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains; must be {wanted}: pieces="
+            f"{path}: in {len(sizes)} piece{'s' * (len(sizes) > 1)} of {shown} grains{one}; must be {wanted}: pieces="
             f"{len(sizes)} or {LARGEST_PIECE} if that is meant, or another tolerance, radius or unit"
         )
     return packing, lines
@@ -124,7 +132,7 @@ def _material_of(path):
 
 
 def _in_metres(path, spheres, parameters, grain_radius_given):
-    """(position (N, 3), radius (N,), gap up to which grains touch), in m."""
+    """(position (N, 3), radius (N,), gap up to which grains touch, edges (3,) of a periodic cell or None), in m."""
     unit = parameters.unit or spheres.unit or "m"
     if spheres.unit and unit != spheres.unit:
         raise ParameterError(f"unit = {unit}: {path} is in {spheres.unit}; must be left out")
@@ -151,7 +159,7 @@ def _in_metres(path, spheres, parameters, grain_radius_given):
     gap = (parameters.tolerance or np.clip(hidden / smallest, SMALLEST_GAP, LARGEST_GAP)) * smallest
     # divided, not multiplied: 0.1 um is then 1e-7 m to the bit
     position, radius = (np.asarray(lengths / in_unit, dtype=float) for lengths in (spheres.position, radius))
-    return position, radius, float(gap / in_unit)
+    return position, radius, float(gap / in_unit), None if spheres.cell is None else spheres.cell / in_unit
 
 
 def _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap):
@@ -171,3 +179,48 @@ def _contacts_in_file(path, position, radius, tolerance, grain_radius, overlap):
     # In a file of our own most are at the overlap of these grains, and so far from those that don't touch.
     at_rest_there = abs(np.median(gaps / depth) + 1.0) < 0.1
     return pairs[gaps <= np.maximum(0.0, tolerance - at_rest_there * depth)]
+
+
+def _pieces(position, radius, gap):
+    """Numbers of grains of the pieces of grains that are at most `gap` apart."""
+    return fragment_sizes(fragment_labels(len(radius), touching(position, radius, gap)))
+
+
+def _apart(position, radius):
+    """How far the pieces of a file are apart, at the widest of the gaps that would join them."""
+    smallest = radius.min()
+    pairs = touching(position, radius, LARGEST_TOLERANCE * smallest)
+    gaps = surface_gaps(position, radius, pairs)
+    shift = smallest - gaps.min(initial=0.0)  # no edge of a sparse graph may be 0
+    tree = minimum_spanning_tree(coo_matrix((gaps + shift, pairs.T), shape=(len(radius),) * 2))
+    if tree.nnz < len(radius) - 1:
+        return f"more than {LARGEST_TOLERANCE:g} radii of the smallest apart"
+    return f"up to {1.005 * (tree.data.max() - shift) / smallest:.3g} radii of the smallest apart"
+
+
+def unwrapped(path, position, radius, gap, edges):
+    """(positions (N, 3) with every piece in one place, number of grains that were moved) of grains in a periodic cell.
+
+    edges: (3,) of the cell, infinite across open sides; gap: up to which grains touch; all in one unit. PackingError
+    where a piece touches its own image."""
+    sides = np.where(np.isfinite(edges), edges, 0.0)  # 0: open, as cKDTree has it
+    folded = np.where(sides > 0, np.mod(position, edges), position)
+    folded[folded == edges] = 0.0  # by rounding
+    pairs = cKDTree(folded, boxsize=sides).query_pairs(2 * radius.max() + gap, output_type="ndarray")
+    between = position[pairs[:, 1]] - position[pairs[:, 0]]
+    images = -np.round(between / edges)  # of the second grain, beside the first
+    touch = np.linalg.norm(between + images * sides, axis=1) - radius[pairs].sum(axis=1) <= gap
+    (first, second), images = pairs[touch].T, images[touch]
+
+    labels = fragment_labels(len(radius), pairs[touch])
+    image, placed = np.zeros_like(position), np.zeros(len(radius), bool)
+    placed[np.unique(labels, return_index=True)[1]] = True  # one grain of every piece stays
+    while not placed.all():
+        for known, other, step in ((first, second, images), (second, first, -images)):
+            next_to = placed[known] & ~placed[other]
+            image[other[next_to]] = image[known[next_to]] + step[next_to]
+            placed[other[next_to]] = True
+    if np.any(image[first] + images != image[second]):
+        must = "must be an aggregate with room around it, or in coordinates that go on beyond the box"
+        raise PackingError(f"{path}: grains touch their own images across the box of the file; {must}")
+    return position + image * sides, int(np.any(image, axis=1).sum())

@@ -8,6 +8,7 @@ Sources: https://github.com/libAtoms/extxyz (Properties), https://docs.lammps.or
 export.textExt, and files that the others write.
 """
 
+import codecs
 import locale
 import re
 from dataclasses import dataclass
@@ -23,16 +24,21 @@ from yade_scripts.parameters import one_line
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
 IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
+LAMMPS_UNITS = {"si": "m", "cgs": "cm", "micro": "um", "nano": "nm"}  # its styles of units, as far as we have theirs
+LENGTH = r"(cm|mm|[u\u00b5\u03bc]m|nm|m)"
+COMMENT = ("#", "%", "!", "//")  # what comments begin with: Python, Matlab, Fortran, C
+FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")  # the exponent of a double, 1.0D+00
 POSITIONS = ("position", "positions", "pos", "xyz", "coordinates", "coords", "points", "centers", "centres")
 # What programs call a column (LAMMPS, OVITO, pandas, ParaView); unwrapped coordinates come before wrapped ones.
 COLUMNS = {
     axis: [f"{axis}u", axis]
-    + [f"{name}{dot}{axis}" for name in ("pos", "position", "center", "centre") for dot in "_."]
+    + [f"{name}{dot}{axis}" for name in ("pos", "position", "center", "centre") for dot in "_. "]
     + [f"{name}{dot}{number}" for name in ("points", "pos", "position") for dot in ":_."]
     for number, axis in enumerate("xyz")
 }
 COLUMNS["radius"] = ["radius", "radii", "r", "rad", "shape.radius"]
 COLUMNS["diameter"] = ["diameter", "diam"]
+COLUMNS |= {f"i{axis}": [f"i{axis}"] for axis in "xyz"}  # LAMMPS: boxes that a grain has left along the axis
 # https://docs.lammps.org/read_data.html, "Atoms section"
 ATOM_STYLES = {
     "sphere": "id type diameter density x y z",
@@ -52,21 +58,9 @@ class Spheres:
     position: np.ndarray  # (N, 3)
     radius: np.ndarray | None  # (N,); None where the file has none
     about: str  # the format, and whether there are radii
+    resolution: float  # the last digit that is written of a coordinate
     unit: str | None = None  # the file's own, if it names one
-
-    @property
-    def resolution(self):
-        """The last digit that is written of a coordinate, in the file's unit. Programs write a fixed number of
-        decimals, or of significant digits; numbers have the same shortest representation as in the text."""
-        array = self.position.ravel()
-        sample = array[np.linspace(0, array.size - 1, min(array.size, SAMPLE)).astype(int)]
-        written = [np.format_float_scientific(number).split("e") for number in sample if number]
-        if not written:
-            return 0.0
-        digits = [len(mantissa.strip("-0.").replace(".", "")) for mantissa, _ in written]
-        decimals = max(count - 1 - int(exponent) for count, (_, exponent) in zip(digits, written))
-        largest = int(np.floor(np.log10(np.abs(array).max())))
-        return 10.0 ** max(-decimals, largest - (max(digits) - 1))
+    cell: np.ndarray | None = None  # (3,), edges of a box in which positions may be wrapped, infinite across open sides
 
 
 def read_spheres(path, most, names=None):
@@ -80,8 +74,10 @@ def read_spheres(path, most, names=None):
             spheres = _of_npz(path)
         elif start.startswith((b"# vtk DataFile", b"<?xml", b"<VTKFile")):
             spheres = _of_vtk(path, start)
-        elif b"aggregate:" in start and b"positions:" in start:
+        elif re.search(rb"^aggregate:", start, re.MULTILINE):
             spheres = _of_yaml(content)
+        elif start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # of Windows
+            spheres = _of_text(content.decode("utf-16", errors="replace"), names)
         elif b"\0" in start:
             raise ValueError(f"of an unknown format; must be {FORMATS}")
         else:
@@ -142,11 +138,18 @@ def _of_yaml(content):
         position, radius = (np.array(found[name], dtype=float) for name in ("positions", "radii"))
     except (yaml.YAMLError, ValueError, KeyError, TypeError) as error:
         raise ValueError(f"not of pyFracAggregate ({error}); must have aggregate: positions, radii") from None
-    unit = str(found.get("length_unit")).replace("\u03bc", "u").replace("\u00b5", "u")
-    return _spheres("YAML", {"radius": radius}, position, unit if unit in IN_A_METRE else None)
+    return _spheres("YAML", {"radius": radius}, position, _unit([str(found.get("length_unit"))]))
 
 
 # ---- tables of text ----
+
+
+class Box(NamedTuple):
+    """A box of LAMMPS along the axes, or of extended xyz."""
+
+    low: np.ndarray  # (3,)
+    edges: np.ndarray  # (3,)
+    periodic: np.ndarray  # (3,), of bool
 
 
 class Table(NamedTuple):
@@ -158,6 +161,8 @@ class Table(NamedTuple):
     names: list | None = None  # of the columns; None: not known
     separator: str | None = None  # None: blanks
     unit: str | None = None  # of length, if the format has one
+    box: Box | None = None
+    scaled: bool = False  # whether coordinates are fractions of the box
 
 
 def _of_text(text, names):
@@ -165,16 +170,23 @@ def _of_text(text, names):
     table = _find_table(lines)
     names = names or table.names
     if names is None:
-        raise ValueError(f"{table.kind}, columns without names; must be named, as in names=-,x,y,z,-,radius")
+        raise ValueError(f"{table.kind}, columns without a name; must be named, as in names=-,x,y,z,-,radius")
     found = _columns(names)
-    rows = [line for line in lines[table.first :] if line.strip() and not line.startswith("#")][: table.rows]
+    rows = [line for line in lines[table.first :] if line.strip() and not line.lstrip().startswith(COMMENT)][
+        : table.rows
+    ]
     if len(rows) < (table.rows or 1):
         raise ValueError(f"{len(rows)} rows of numbers; must be {table.rows or '2 or more'}")
+    rows = [FORTRAN.sub("e", line.replace(",", ".") if table.separator == ";" else line) for line in rows]
     try:
-        array = np.loadtxt(rows, delimiter=table.separator, usecols=tuple(found.values()), ndmin=2)
+        array = np.loadtxt(rows, delimiter=table.separator, usecols=tuple(found.values()), ndmin=2, quotechar='"')
     except ValueError as error:
         raise ValueError(f"not a table of numbers ({error})") from None
-    return _spheres(table.kind, dict(zip(found, array.T)), unit=table.unit)
+    by_name = dict(zip(found, array.T))
+    of_columns = _unit([unit for _, unit in map(_parted, (names[column] for column in found.values()))])
+    if table.unit and of_columns and table.unit != of_columns:
+        raise ValueError(f"names two units, {table.unit} and {of_columns}; must be in one")
+    return _spheres(table.kind, by_name, unit=of_columns or table.unit, box=table.box, scaled=table.scaled)
 
 
 def _find_table(lines):
@@ -183,16 +195,17 @@ def _find_table(lines):
         raise ValueError("empty; must be a file of grains")
     if next(filter(None, head)).startswith("ITEM:"):
         return _dump(lines)
-    if atoms := [number for number, line in enumerate(head) if re.match(r"\d+\s+atoms\b", line)]:
-        return _data(lines, _count(lines, atoms[0]))
     if head[0].isdecimal():
         return _xyz(lines)
+    atoms = [number for number, line in enumerate(head) if re.match(r"\d+\s+atoms\b", line)]
+    if atoms and (section := next((n for n, line in enumerate(lines) if re.match(r"Atoms\b", line)), None)):
+        return _data(lines, _count(lines, atoms[0]), section)
     words, rows = head[0].split(), [line.split() for line in head[5:] if line]
     if 3 <= len(words) < 7 and words[0].isdecimal() and rows and all(len(row) == 7 for row in rows):
         # aggregate.txt of DustCollider: N and two radii, four lines, the grains in nm
         names = ["x", "y", "z", "-", "radius", "-", "material"]
         return Table("DustCollider", 5, int(words[0]), names, unit="nm")
-    return _plain(head)
+    return _plain(lines)
 
 
 def _count(lines, number):
@@ -209,21 +222,52 @@ def _frames(frames):
 
 def _dump(lines):
     """ITEM: NUMBER OF ATOMS, a line with it, ..., ITEM: ATOMS and names, the grains; again for each frame."""
-    counts = [number + 1 for number, line in enumerate(lines) if line.startswith("ITEM: NUMBER OF ATOMS")]
-    frames = [number for number, line in enumerate(lines) if line.startswith("ITEM: ATOMS")]
+    items = {}
+    for number, line in enumerate(lines):
+        if item := re.match(r"ITEM: (UNITS|NUMBER OF ATOMS|BOX BOUNDS|ATOMS)\b", line):
+            items.setdefault(item[1], []).append(number)
+    frames = items.get("ATOMS")
     if not frames:
         raise ValueError("no ITEM: ATOMS; must have one")
-    rows = _count(lines, counts[-1]) if counts else None
-    return Table(f"LAMMPS dump, {_frames(frames)}", frames[-1] + 1, rows, lines[frames[-1]].split()[2:])
+    rows = _count(lines, items["NUMBER OF ATOMS"][-1] + 1) if "NUMBER OF ATOMS" in items else None
+    names, scaled = lines[frames[-1]].split()[2:], False
+    if not {"x", "xu"} & set(names):  # xs, xsu: of the box
+        names, scaled = [re.sub(r"^([xyz])s(u?)$", r"\1\2", name) for name in names], True
+    unit = LAMMPS_UNITS.get(lines[items["UNITS"][0] + 1].strip()) if "UNITS" in items else None
+    at = items.get("BOX BOUNDS", [None])[-1]
+    box = None if at is None else _box([line.split()[:3] for line in lines[at + 1 : at + 4]], lines[at].split()[-3:])
+    if scaled and box is None:
+        raise ValueError("coordinates in units of its box, which is none along the axes; must be x y z or xu yu zu")
+    kind = f"LAMMPS dump, {_frames(frames)}"
+    return Table(kind, frames[-1] + 1, rows, names, unit=unit, box=box, scaled=scaled)
 
 
-def _data(lines, rows):
-    """N atoms in the header; Atoms # style, an empty line, the grains."""
-    for number, line in enumerate(lines):
-        if section := re.match(r"Atoms\b\s*(?:#\s*(\S+))?", line):
-            names = ATOM_STYLES[section[1]].split() if section[1] in ATOM_STYLES else None
-            return Table(f"LAMMPS data, atom style {section[1] or 'without name'}", number + 1, rows, names)
-    raise ValueError("no section Atoms; must have one")
+def _data(lines, rows, section):
+    """N atoms and the box in the header; Atoms # style, an empty line, the grains."""
+    style = re.match(r"Atoms\b\s*(?:#\s*(\S+))?", lines[section])[1]
+    names = ATOM_STYLES[style].split() + ["ix", "iy", "iz"] if style in ATOM_STYLES else None
+    first = next((line.partition("#")[0].split() for line in lines[section + 1 :] if line.strip()), [])
+    if names and len(first) < len(names):
+        names = names[:-3]
+    head = [line.split() for line in lines[:section]]
+    bounds = [next((line[:2] for line in head if line[2:4] == [f"{axis}lo", f"{axis}hi"]), []) for axis in "xyz"]
+    tilts = next((line[:3] for line in head if line[3:6] == ["xy", "xz", "yz"]), "000")
+    box = _box([[*bound, tilt] for bound, tilt in zip(bounds, tilts)], ["pp"] * 3)
+    unit = re.search(r"\bunits = (\w+)", lines[0])
+    kind = f"LAMMPS data, atom style {style or 'without name'}"
+    return Table(kind, section + 1, rows, names, unit=LAMMPS_UNITS.get(unit and unit[1]), box=box)
+
+
+def _box(bounds, boundaries):
+    """Box of texts low, high and maybe a tilt for each axis; None where it is tilted or not given."""
+    try:
+        numbers = [[float(text) for text in bound] for bound in bounds]
+        low, high = np.array([bound[:2] for bound in numbers]).T
+    except ValueError:
+        return None
+    if any(tilt for bound in numbers for tilt in bound[2:]):
+        return None
+    return Box(low, high - low, np.array([text == "pp" for text in boundaries]))
 
 
 def _xyz(lines):
@@ -240,33 +284,61 @@ def _xyz(lines):
             names += [name] if count == "1" else together
     elif len(row) in (4, 5) and not ("." in row[0] and _is_number(row[0])):
         names = ["species", "x", "y", "z", "radius"][: len(row)]  # x y z may be without a species: then not known
-    return Table(f"{kind}, {_frames(frames)}", frames[-1] + 2, _count(lines, frames[-1]), names)
+    rows, unit = _count(lines, frames[-1]), _unit_in([about])
+    return Table(f"{kind}, {_frames(frames)}", frames[-1] + 2, rows, names, unit=unit, box=_lattice(about))
 
 
-def _plain(head):
-    """Comments with #, a line of names or none, the grains."""
-    comments = [line.lstrip("# ") for line in head if line.startswith("#")]
-    at = next((number for number, line in enumerate(head) if line and not line.startswith("#")), None)
-    if at is None:
-        raise ValueError(f"{len(head)} lines of comments; must be followed by grains")
-    separator = next((mark for mark in ",;" if mark in head[at]), None)
-    words = head[at].split(separator)
-    if len(words) == 1:
+def _lattice(about):
+    """Box of the line about a frame, Lattice="Lx 0 0 0 Ly 0 0 0 Lz" pbc="T T F"; None without, and of a tilted one."""
+    found = re.search(r'Lattice="([^"]*)"', about)
+    edges = np.array(found[1].split() if found else [], dtype=float)
+    if edges.size != 9 or np.count_nonzero(edges) != 3 or not edges[::4].all():
+        return None
+    periodic = re.search(r'pbc="(\S+) (\S+) (\S+)"', about) or " TTT"
+    return Box(np.zeros(3), edges[::4], np.array([periodic[side][0] in "T1" for side in (1, 2, 3)]))
+
+
+def _plain(lines):
+    """Comments, a line of names or none, the grains."""
+    used, comments = ((number, line.strip()) for number, line in enumerate(lines) if line.strip()), []
+    for at, line in used:
+        if not line.startswith(COMMENT):
+            break
+        comments.append(line.lstrip("#%!/ \t"))
+    else:
+        raise ValueError(f"{len(comments)} lines of comments; must be followed by grains")
+    second, row = next(used, (at, line))
+    separator, unit = next((mark for mark in ";,\t" if mark in line), None), _unit_in(comments)
+    head, row = _words(line, separator), _words(row, separator)
+    if len(head) == 1:
         raise ValueError(f"of an unknown format; must be {FORMATS}")
-    if not any(map(_is_number, words)):
-        return Table("table", at + 1, None, words, separator)
-    names = ["x", "y", "z", "radius"][: len(words)] if len(words) <= 4 else None
+    if not any(map(_is_number, head)):
+        if len(row) == len(head) + 1 and not separator:  # of pandas and R: the number of a row has no name
+            head = ["-", *head]
+        if len(row) != len(head):
+            return Table(f"table with {len(head)} names", second, None, None, separator, unit)
+        return Table("table", second, None, head, separator, unit)
+    names = ["x", "y", "z", "radius"][: len(head)] if len(head) <= 4 else None
     for comment in comments:
         of_yade = re.match(r"format (x_y_z_\S*|\S+_x_y_z_\S*)$", comment)
-        in_comment = of_yade[1].split("_") if of_yade else comment.split(separator)
-        if {"x", "y", "z"} <= {word.strip().lower() for word in in_comment}:
-            names = in_comment
-    return Table("table", at, None, names, separator)
+        plain = re.sub(r"^[\w ]+[:=]\s", "", comment)  # columns: x y z
+        for words in (of_yade[1].split("_") if of_yade else [], _words(plain, separator), _words(plain)):
+            if len(words) == len(head) and {"x", "y", "z"} <= set(_found(words)):
+                names = words
+    return Table("table", at, None, names, separator, unit)
+
+
+def _words(line, separator=None):
+    """The cells of a line, without what is in it after # and a separator at its end."""
+    line = line.partition("#")[0].strip()
+    if separator == "\t" or separator and separator in line:
+        return [word.strip() for word in line.rstrip(separator).split(separator)]
+    return re.findall(r'"[^"]*"|[^\s,;]+', re.sub(r"\s+(?=[\[(])", "", line))
 
 
 def _is_number(word):
     try:
-        float(word)
+        float(FORTRAN.sub("e", word.strip('"').replace(",", ".")))
     except ValueError:
         return False
     return True
@@ -276,13 +348,8 @@ def _is_number(word):
 
 
 def _columns(names, axes="xyz"):
-    """{name of COLUMNS: number of the column} of the names of a file's columns, which must have `axes` among them;
-    names go without case, quotes and a unit in brackets."""
-    plain = [re.sub(r"[\[(].*[\])]", "", str(name)).strip(" \t\"'_").lower() for name in names]
-    found = {}
-    for name, aliases in COLUMNS.items():
-        if there := [alias for alias in aliases if alias in plain]:
-            found[name] = plain.index(there[0])
+    """{name of COLUMNS: number of the column} of the names of a file's columns, which must have `axes` among them."""
+    found = _found(names)
     if missing := [axis for axis in axes if axis not in found]:
         raise ValueError(
             f"no {' '.join(missing)} among its columns {', '.join(map(str, names))[:100]}; must be there, or "
@@ -291,14 +358,66 @@ def _columns(names, axes="xyz"):
     return {name: column for name, column in found.items() if axes or name not in "xyz"}
 
 
-def _spheres(kind, by_name, position=None, unit=None):
+def _found(names):
+    """{name of COLUMNS: number of the column} of names, whatever their case, quotes and units."""
+    plain = [_parted(name)[0] for name in names]
+    first = {name: next((alias for alias in aliases if alias in plain), None) for name, aliases in COLUMNS.items()}
+    return {name: plain.index(alias) for name, alias in first.items() if alias}
+
+
+def _parted(name):
+    """(name in small letters, unit or None) of a column such as x, "X [nm]", x (m), x_um or 1:x."""
+    name = re.sub(r"^[\[(]?\d+[\])]?[:=]", "", str(name).strip(" \t\"'"))
+    unit = re.search(rf"[\[(]\s*{LENGTH}\s*[\])]|[_ ]{LENGTH}$", name)
+    plain = name[: unit.start()] if unit else re.sub(r"[\[(].*[\])]", "", name)
+    return plain.strip(" \t\"'_").lower(), unit and (unit[1] or unit[2])
+
+
+def _unit_in(comments):
+    """The unit of length that comments name, as in: lengths in nm, unit: um; None without one."""
+    found = [re.findall(rf"(?:\bin\s+|\bunits?\b[\w ]{{0,12}}[:=\s]\s*){LENGTH}(?![\w/^*])", line) for line in comments]
+    return _unit([unit for units in found for unit in units])
+
+
+def _unit(units):
+    """The one of IN_A_METRE that all of a list name, as far as they name one; None where none does."""
+    known = {str(unit).replace("\u03bc", "u").replace("\u00b5", "u") for unit in units} & set(IN_A_METRE)
+    if len(known) > 1:
+        raise ValueError(f"names several units of length, {', '.join(sorted(known))}; must be in one")
+    return next(iter(known), None)
+
+
+def _spheres(kind, by_name, position=None, unit=None, box=None, scaled=False):
     """Spheres of arrays (N,) by the names of COLUMNS; position (N, 3) in place of x, y, z."""
     if position is None:
         position = np.stack([by_name[axis] for axis in "xyz"], axis=-1)
     numbers("position", position, (None, 3), least=-LARGEST, most=LARGEST)
+    digit = _resolution(position) * (box.edges.max() if scaled else 1.0)
+    cell = None
+    if scaled:
+        position = box.low + position * box.edges
+    if box is not None:
+        cell = np.where(box.periodic, box.edges, np.inf)
+        if {"ix", "iy", "iz"} <= set(by_name):
+            position = position + box.edges * np.stack([by_name[f"i{axis}"] for axis in "xyz"], axis=-1)
     name = next((name for name in ("radius", "diameter") if name in by_name), None)
     if name is None:
-        return Spheres(position, None, f"{kind}, without radii", unit)
+        return Spheres(position, None, f"{kind}, without radii", digit, unit, cell)
     sizes = numbers(name, by_name[name], (len(position),), positive=True, most=LARGEST)
     radius = sizes / 2 if name == "diameter" else by_name[name]
-    return Spheres(position, radius, f"{kind}, with {'radii' if name == 'radius' else 'diameters'}", unit)
+    about = f"{kind}, with {'radii' if name == 'radius' else 'diameters'}"
+    return Spheres(position, radius, about, digit, unit, cell)
+
+
+def _resolution(position):
+    """The last digit that is written of a coordinate. Programs write a fixed number of decimals, or of significant
+    digits; numbers have the same shortest representation as in the text."""
+    array = position.ravel()
+    sample = array[np.linspace(0, array.size - 1, min(array.size, SAMPLE)).astype(int)]
+    written = [np.format_float_scientific(number).split("e") for number in sample if number]
+    if not written:
+        return 0.0
+    digits = [len(mantissa.strip("-0.").replace(".", "")) for mantissa, _ in written]
+    decimals = max(count - 1 - int(exponent) for count, (_, exponent) in zip(digits, written))
+    largest = int(np.floor(np.log10(np.abs(array).max())))
+    return 10.0 ** max(-decimals, largest - (max(digits) - 1))
