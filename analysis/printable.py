@@ -8,6 +8,10 @@ LISTED = 20  # names in a message
 FAILED = 2  # exit status
 
 
+class Refused(ValueError):
+    """What cannot be done, or used; the message is one line that says why."""
+
+
 def printable(text):
     """One line of a text (or of anything's str()): what is not printable becomes an escape, as with ls -b.
 

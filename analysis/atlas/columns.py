@@ -77,7 +77,7 @@ COLUMNS = (
 
 
 def read_runs(file):
-    """The atlas's table of runs (DataFrame) from a runs.csv; TableError or OSError where it is none."""
+    """The atlas's table of runs (DataFrame) from a runs.csv; Refused where it is none."""
     return read_table(file, COLUMNS)[0]
 
 

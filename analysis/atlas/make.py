@@ -14,7 +14,7 @@ import pandas
 from scipy.spatial import cKDTree
 
 from ..printable import FAILED, complain
-from ..runs.table import TableError
+from ..runs.files import RunFolderError
 from ..theory import GRAIN_RADIUS, ICE
 from ..version import version
 from .columns import read_runs
@@ -150,7 +150,7 @@ def main(folder=FOLDER):
                 file = Path(folder) / outcomes_file(structure, averaged).name
                 write_outcomes(file, outcome_grid(model, structure, averaged, version()))
                 print(file)
-    except (OSError, ModuleNotFoundError, TableError, ValueError) as error:
+    except (OSError, ModuleNotFoundError, RunFolderError, ValueError) as error:
         complain(error)
         return FAILED
     return 0

@@ -6,11 +6,12 @@ table.lookup(velocity=[1, 10], grains=500, mass_ratio=1, filling=0.15)["p_sticki
 """
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
-from ..printable import suggested
+from ..printable import Refused, suggested
 from ..runs.files import write_file
 from .rules import KINDS, OF_KIND
 
@@ -24,10 +25,6 @@ COLUMNS = (*PROBABILITIES, *ERRORS, TOUCHING, *LEFT, *OF_KIND, INSIDE, "runs")
 SCALES = {"log10": np.log10, "linear": np.asarray}
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
 ROUNDING = 1e-9  # of the sum of a query's weights
-
-
-class OutcomeTableError(ValueError):
-    """A table of outcomes that cannot be used; the message is one line: file, what is wrong, what it must be."""
 
 
 @dataclass(frozen=True)
@@ -106,10 +103,10 @@ class OutcomeTable:
         The distribution is that of collisions, v^3 exp(-3 v^2 / 2 <v^2>), as faster aggregates meet more often; with
         a threshold it gives the probability of DustPy (Stammler & Birnstiel 2022). `inside` becomes the fraction of
         collisions that are inside. Intervals are left out: means of their ends are no ends of an interval. Columns
-        rules.OF_KIND are means over the collisions with that outcome. OutcomeTableError for a table that is one.
+        rules.OF_KIND are means over the collisions with that outcome. Refused for a table that is one.
         """
         if OF_MAXWELL in self.comments:
-            raise OutcomeTableError(f"table of outcomes: {OF_MAXWELL}; must be one of single speeds")
+            raise Refused(f"table of outcomes: {OF_MAXWELL}; must be one of single speeds")
         all_speeds, between_ends = _maxwell_weights(self.axes[0])
         columns = tuple(name for name in self.columns if name not in INTERVALS)
         own = self.values[..., [self.columns.index(name) for name in columns]]
@@ -140,14 +137,8 @@ def _maxwell_weights(axis):
 
 
 def read_outcomes(path):
-    """OutcomeTable of a file; OutcomeTableError where it is none."""
-    try:
-        with open(path, encoding="ascii", errors="replace") as file:
-            text = file.read()
-    except OSError as error:
-        advice = "must be a table of outcomes, as a checkout's analysis/gallery/atlas/outcomes.txt"
-        raise OutcomeTableError(f"{path}: {error.strerror}; {advice}") from None
-    lines = text.split("\n")
+    """OutcomeTable of a file; Refused where it is none."""
+    lines = Path(path).read_text(encoding="ascii", errors="replace").split("\n")
     comments = tuple(line[1:].strip() for line in lines if line.startswith("#"))
     rows = iter([line.split() for line in lines if line.strip() and not line.startswith("#")])
     try:
@@ -157,9 +148,9 @@ def read_outcomes(path):
         values = values.reshape(*(len(axis.nodes) for axis in axes), len(columns))
     except (StopIteration, IndexError, ValueError) as error:  # words where numbers must be, or an end too early
         must = "must be a table of outcomes, as write_outcomes() makes it"
-        raise OutcomeTableError(f"{path}: {must}: {error}") from None
+        raise Refused(f"{path}: {must}: {error}") from None
     if INSIDE not in columns or not np.isfinite(values).all():
-        raise OutcomeTableError(f"{path}: must have a column `{INSIDE}`, and numbers everywhere")
+        raise Refused(f"{path}: must have a column `{INSIDE}`, and numbers everywhere")
     return OutcomeTable(axes, columns, values, comments)
 
 

@@ -13,6 +13,7 @@ from PIL import Image, ImageDraw, ImageFont
 from ..figures.grain_colours import COLOURINGS, Range, on_scale
 from ..figures.sphere_raster import paint_spheres
 from ..figures.style import NANO
+from ..printable import Refused
 from ..progress import progress
 from ..runs.files import replacing, require_output
 from .fields import exported_states
@@ -28,18 +29,14 @@ _INK = (60, 60, 60)
 _LARGEST_VIEW = 2.0  # sizes of the view at the start: what flies farther leaves it
 
 
-class NoFilm(Exception):
-    """The film could not be encoded; the message is one line."""
-
-
 def write_film(run, file, frames_per_second=10, width=960, along="z", colour="aggregate"):
     """Write the states of a RunFolder as a film, viewed from far along an axis; the file appears when it is complete.
 
     file : Path with one of ENDINGS, H.264 in that container, or a .gif that repeats. width : pixels; less where the
     film would be more than 9/8 as high. along : one of AXES; grains of a periodic cell are drawn within it. colour :
-    one of grain_colours.COLOURINGS. NoFilm if ffmpeg is missing or fails, RunFolderError without a whole state."""
+    one of grain_colours.COLOURINGS. Refused if ffmpeg is missing or fails, RunFolderError without a whole state."""
     if file.suffix not in ENDINGS:  # before the frames are drawn
-        raise NoFilm(f"{file}: must end in {' or '.join(ENDINGS)}")
+        raise Refused(f"{file}: must end in {' or '.join(ENDINGS)}")
     require_output(file)
     axes = list(AXES[along])
     view = _view(run, axes)
@@ -128,9 +125,9 @@ def _font(size=20):
 
 
 def _encode(frames, file, frames_per_second):
-    """Through ffmpeg; NoFilm with its last line when it complains: on a full disk its status may be 0."""
+    """Through ffmpeg; Refused with its last line when it complains: on a full disk its status may be 0."""
     if not shutil.which("ffmpeg"):
-        raise NoFilm("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)")
+        raise Refused("ffmpeg: not installed; must be there to write a film (apt-get install ffmpeg)")
     first = next(frames)
     size = f"{first.shape[1]}x{first.shape[0]}"
     command = ["ffmpeg", "-v", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size]
@@ -150,4 +147,4 @@ def _encode(frames, file, frames_per_second):
         messages.seek(0)
         lines = messages.read().decode(errors="replace").strip().splitlines()
     if encoder.returncode or lines:
-        raise NoFilm(f"ffmpeg: {lines[-1] if lines else f'exit status {encoder.returncode}'}")
+        raise Refused(f"ffmpeg: {lines[-1] if lines else f'exit status {encoder.returncode}'}")

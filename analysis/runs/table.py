@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pandas
 
-from ..printable import printable
-from .files import RunFolderError, read_text
+from ..printable import Refused, printable
+from .files import read_text
 
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
@@ -33,10 +33,6 @@ class Column:
     meaning: str
     kind: str = "f"  # numpy's letter of the type: "f", "i", "b", "O" for words
     gaps: bool = False  # whether it may have no value in places
-
-
-class TableError(Exception):
-    """A file that is no table of runs; the message is one line."""
 
 
 def make_table(measured):
@@ -66,7 +62,8 @@ def table_text(table, columns, head):
 
 
 def read_table(file, columns):
-    """(DataFrame, head) of a CSV file; TableError where it is not one with these columns."""
+    """(DataFrame, head) of a CSV file; Refused where it is not one with these columns, RunFolderError
+    where it cannot be read."""
     try:
         lines = read_text(file).split("\n")
         comments = list(takewhile(lambda line: line.startswith("# "), lines))
@@ -80,13 +77,11 @@ def read_table(file, columns):
                 raise ValueError(f"has the column {name} {names.count(name)} times; must be once")
         text = io.StringIO("\n".join(body))
         table = pandas.read_csv(text, dtype={RUN: str}, keep_default_na=False, na_values=[""], **EXACTLY)
-    except RunFolderError as error:
-        raise TableError(str(error)) from None
     except (ValueError, RecursionError) as error:  # pandas's and json's errors are ValueErrors too
-        raise TableError(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
+        raise Refused(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
     lacking = [name for name in (RUN, *(column.name for column in columns)) if name not in table]
     if lacking:
-        raise TableError(f"{file}: lacks the column {', '.join(lacking)}")
+        raise Refused(f"{file}: lacks the column {', '.join(lacking)}")
     for column in columns:
         _check(file, column, table[column.name])
     return table.assign(**{FOLDER: None}), head
@@ -96,6 +91,6 @@ def _check(file, column, values):
     kinds, words = _TYPES[column.kind]
     empty = values.isna()
     if empty.any() and not column.gaps:
-        raise TableError(f"{file}: '{column.name}' has no value in row {int(empty.argmax()) + 1}")
+        raise Refused(f"{file}: '{column.name}' has no value in row {int(empty.argmax()) + 1}")
     if values.dtype.kind not in kinds and not empty.all():
-        raise TableError(f"{file}: '{column.name}' must be {words}")
+        raise Refused(f"{file}: '{column.name}' must be {words}")

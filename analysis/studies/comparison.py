@@ -11,6 +11,7 @@ from html import escape
 import numpy as np
 import pandas
 
+from ..printable import Refused
 from ..version import version_text
 from .estimates import Estimate
 
@@ -170,34 +171,30 @@ img { max-width: 100%; } table { border-collapse: collapse; font-size: 0.8rem; }
 th, td { padding: 0.15rem 0.5rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }"""
 
 
-class PageError(ValueError):
-    """A page whose marks or numbers are wrong; the message is one line."""
-
-
 def filled(file, text, rows, independent):
-    """The text of a README (str) whose table, between its marks, has the rows that it lists made anew. PageError where
+    """The text of a README (str) whose table, between its marks, has the rows that it lists made anew. Refused where
     it lacks the second mark, lists a quantity that no row has, or has a number with an error that no row has."""
     if text.count(START) != 1 or text.count(END) != 1:
-        raise PageError(f"{file}: must have the lines {START} and {END} once")
+        raise Refused(f"{file}: must have the lines {START} and {END} once")
     before, rest = text.split(START)
     table, after = rest.split(END)
     listed = [line.split(" | ")[0].removeprefix("| ") for line in table.splitlines() if line.startswith("| ")][1:]
     known = {row.quantity: row for row in rows}
     for quantity in listed:
         if quantity not in known:
-            raise PageError(f"{file}: its table has {quantity}: must be a quantity of comparison.csv")
+            raise Refused(f"{file}: its table has {quantity}: must be a quantity of comparison.csv")
     require_numbers(file, before + after, [str(row.ours) for row in rows])
     shown = markdown_table([known[quantity] for quantity in listed])
     return f"{before}{START}\n\n{shown}\n\n{words_of(rows, independent)}\n\n{END}{after}"
 
 
 def require_numbers(file, text, made):
-    """PageError where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str]),
+    """Refused where a number with an error in a text (str), '54.0 ± 1.0', is in none of the numbers made ([str]),
     but for its sign."""
     known = {own for number in made for own in NUMBER.findall(number)}
     for number in NUMBER.findall(text):
         if number not in known:
-            raise PageError(f"{file}: {number}: no study has this number; must be one of comparison.csv")
+            raise Refused(f"{file}: {number}: no study has this number; must be one of comparison.csv")
 
 
 def html_page(study, rows, figures, lines):

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pandas
 
-from ..printable import suggested
+from ..printable import Refused, suggested
 from ..progress import progress
 from ..report.rows import differing, frame, parameters_of, varied
 from ..runs.collect import joined, provenance, run_folders
 from ..runs.files import RunFolderError
 from ..runs.folder import open_run
 from ..runs.format import ENDED_FILE, value_text
-from ..runs.table import ENDING, FOLDER, RUN, TableError, make_table, read_table, table_text
+from ..runs.table import ENDING, FOLDER, RUN, make_table, read_table, table_text
 from .columns import NotMeasured
 
 TABLE_FILE = "runs.csv"
@@ -46,7 +46,7 @@ def gather(study, paths):
     for file in tables:
         try:
             own, origin = _read(study, file)
-        except TableError as error:
+        except (Refused, RunFolderError) as error:
             found.problems.append(str(error))
             continue
         if known := len(own.keys() & rows.keys()):
@@ -78,10 +78,10 @@ def _read(study, file):
     """({key: row}, provenance) of a table."""
     table, head = read_table(file, study.columns)
     if head.get("study") != study.name or not isinstance(head.get("provenance"), dict):
-        raise TableError(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
+        raise Refused(f"{file}: a table of the study {head.get('study')}: must be of {study.name}")
     rows = {_key(study, row): row for row in table.to_dict("records")}
     if len(rows) < len(table):
-        raise TableError(f"{file}: two runs have the same {', '.join(study.key)}")
+        raise Refused(f"{file}: two runs have the same {', '.join(study.key)}")
     return rows, head["provenance"]
 
 

@@ -3,7 +3,7 @@
 import pandas
 
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
-from ..printable import suggested
+from ..printable import Refused, suggested
 from ..report.rows import at_end, differing, parameters, table, varied
 from ..runs.format import CHANNELS, COLOURS, COMPRESSION, same, value_text
 from ..runs.table import FOLDER
@@ -13,10 +13,6 @@ from .figures import curves
 WHATS = {"sticking": "outcome", "largest": "largest_fraction", "energy": at_end("kinetic")}  # and their columns
 FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggregates
 OF_MAXIMUM = {"d_max", "t_max"}
-
-
-class CannotPlot(ValueError):
-    """These runs cannot be drawn so; the message is one line."""
 
 
 def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
@@ -44,7 +40,7 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     Returns
     -------
     matplotlib.figure.Figure
-        CannotPlot (a ValueError) also if runs differ in parameters beside x, by, the seed and the files.
+        Refused (a ValueError) also if runs differ in parameters beside x, by, the seed and the files.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
     attributes, where = found.attrs, where or {}
@@ -53,16 +49,16 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     for name in filter(None, (what, x, by, *where)):
         if name not in found and not (name == what and what in WHATS):
             names = (*WHATS, *found) if name == what else found
-            raise CannotPlot(f"table of runs: no column {name}{suggested(name, names)}")
+            raise Refused(f"table of runs: no column {name}{suggested(name, names)}")
     for name, value in where.items():
         found = _only(found, name, value)
     number, column = len(found), WHATS.get(what, what)
     found = _complete(found, what, [name for name in (column, x, by) if name])
     if not len(found):
-        raise CannotPlot(f"no run has all of {', '.join(filter(None, (what, x, by)))}")
+        raise Refused(f"no run has all of {', '.join(filter(None, (what, x, by)))}")
     for name in {x, column} - {"outcome"}:
         if found[name].dtype.kind not in "fiub":
-            raise CannotPlot(f"{name}: holds words, or nothing; must be a column of numbers")
+            raise Refused(f"{name}: holds words, or nothing; must be a column of numbers")
     seed = "seed" if "seed" in found else FOLDER
     _require_alike(found, x, by, seed)
     files = [name for name in FILES if name in found and found[name].notna().any()]
@@ -74,9 +70,9 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     try:
         figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
     except ValueError as error:  # a pair with several runs
-        raise CannotPlot(f"{what}: {error}") from None
+        raise Refused(f"{what}: {error}") from None
     if figure is None:
-        raise CannotPlot(f"{what}: no run has a value")
+        raise Refused(f"{what}: no run has a value")
     title = f"runs: {len(found)}, pairs: {found.pair.nunique()}"
     title += f", left out: {number - len(found)}" if len(found) < number else ""
     figure.suptitle(title, fontsize=10)
@@ -111,7 +107,7 @@ def _only(found, name, value):
     kept = found[name].map(lambda own: same(own, value))
     if not kept.any():
         there = ", ".join(map(str, found[name].unique()))
-        raise CannotPlot(f"where {name} = {value}: no run is left; must be one of {there}")
+        raise Refused(f"where {name} = {value}: no run is left; must be one of {there}")
     return found[kept]
 
 
@@ -128,9 +124,9 @@ def _complete(found, what, columns):
 
 
 def _require_alike(found, x, by, seed):
-    """CannotPlot for runs of several kinds, and for those that differ in other parameters."""
+    """Refused for runs of several kinds, and for those that differ in other parameters."""
     if found["kind"].nunique() > 1:
-        raise CannotPlot(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
+        raise Refused(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
     others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
     if others and x in parameters(found):
-        raise CannotPlot(differing(found, others, "choose by or where"))
+        raise Refused(differing(found, others, "choose by or where"))

@@ -7,16 +7,12 @@ from pathlib import Path
 from runpy import run_path
 from typing import Callable
 
-from ..printable import suggested
+from ..printable import Refused, suggested
 from ..runs.format import COLLISION, PARAMETER_WORDS, same
 from .columns import LARGEST, OUTCOME, VELOCITY, NotMeasured, parameter, row_of
 
 NAMES = ("atlas", "compressed", "compression", "elastoplastic", "sintered", "viscous")
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
-
-
-class NoSuchStudy(Exception):
-    """No study of that name, or no file that defines one; the message is one line."""
 
 
 @dataclass(frozen=True)
@@ -107,15 +103,15 @@ def collision_study(title, question, varied, rows, figures=lambda runs: (), pair
 
 
 def find(name):
-    """Study of that name, or of a file NAME.py that defines STUDY; NoSuchStudy."""
+    """Study of that name, or of a file NAME.py that defines STUDY; Refused."""
     if name.endswith(".py"):
         file = Path(name)
         if not file.is_file():
-            raise NoSuchStudy(f"{file}: no such file")
+            raise Refused(f"{file}: no such file")
         defined = run_path(str(file), run_name=f"own_study_{file.stem}")
         if "STUDY" not in defined:
-            raise NoSuchStudy(f"{file}: defines no STUDY; must be as analysis/STUDIES.md says")
+            raise Refused(f"{file}: defines no STUDY; must be as analysis/STUDIES.md says")
         return replace(defined["STUDY"], name=file.stem)
     if name not in NAMES:
-        raise NoSuchStudy(f"no study {name}{suggested(name, NAMES)}, or a file NAME.py of one's own")
+        raise Refused(f"no study {name}{suggested(name, NAMES)}, or a file NAME.py of one's own")
     return replace(import_module(f"..{name}", __name__).STUDY, name=name)

@@ -9,14 +9,7 @@ import numpy as np
 import pytest
 
 from analysis.atlas.adapters.dustpy import use_atlas
-from analysis.atlas.outcome_table import (
-    PROBABILITIES,
-    Axis,
-    OutcomeTable,
-    OutcomeTableError,
-    read_outcomes,
-    write_outcomes,
-)
+from analysis.atlas.outcome_table import PROBABILITIES, Axis, OutcomeTable, read_outcomes, write_outcomes
 from analysis.theory import ICE, interaction_energies, pair_constants
 
 ROOT = Path(__file__).parents[2]
@@ -80,7 +73,7 @@ def test_wrong_tables_are_refused(table, tmp_path):
     file = tmp_path / "outcomes.txt"
     write_outcomes(file, table)
     file.write_text(file.read_text().replace("log10 0.1", "log10 0.9", 1))
-    with pytest.raises(OutcomeTableError, match=f"^{file}: .*increasing"):
+    with pytest.raises(ValueError, match=f"^{file}: .*increasing"):
         read_outcomes(file)
 
 

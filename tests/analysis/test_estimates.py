@@ -6,7 +6,7 @@ import numpy as np
 import pandas
 import pytest
 
-from analysis.studies.comparison import END, START, PageError, Row, as_text, counted, filled
+from analysis.studies.comparison import END, START, Row, as_text, counted, filled
 from analysis.studies.estimates import *
 
 
@@ -94,6 +94,6 @@ def test_a_page_has_its_table_filled_and_every_number_in_its_words_checked():
     assert "| ours alone |  | 3.00 ± 0.20 (5) |  |  |" in page and page.endswith(f"{END}\nEnd\n")
     assert filled("README.md", page, rows, "pairs") == page and "1 agrees" in counted(rows)
     for old, new, words in (("2.00", "2.01", "no study has this number"), ("alone", "lone", "its table has")):
-        with pytest.raises(PageError, match=words):
+        with pytest.raises(ValueError, match=words):
             filled("README.md", text.replace(old, new), rows, "pairs")
     assert list(as_text(rows))[1][3:] == ("-1.0", "agrees")

@@ -15,7 +15,7 @@ from math import pi
 import numpy as np
 
 from ...theory import MATERIALS, interaction_energies, pair_constants
-from ..outcome_table import INSIDE, PROBABILITIES, TOUCHING, OutcomeTable, OutcomeTableError, read_outcomes
+from ..outcome_table import INSIDE, PROBABILITIES, TOUCHING, OutcomeTable, read_outcomes
 from ..query import MOSTLY, radius_of
 from ..rules import OF_KIND
 
@@ -84,7 +84,7 @@ def dustpy_outcomes(table):
     in DustPy it gains the smaller one's mass by sticking, and loses as much by erosion (excavatedMass = 1).
     """
     if missing := [name for name in (*PROBABILITIES, TOUCHING, *OF_KIND) if name not in table.columns]:
-        raise OutcomeTableError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
+        raise ValueError(f"table of outcomes: no column {missing[0]}; must be one that this version makes")
     p = {name: table.column(name) for name in table.columns}
     transfer = p["p_mass_transfer"]
     sticks = (1.0 + p["gain_mass_transfer"]) / 2.0

@@ -10,7 +10,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from ...figures.grain_colours import BONDED, COLOURINGS, SCALE, Range
 from ...figures.style import run_title
-from ...printable import printable
+from ...printable import Refused, printable
 from ...progress import progress
 from ...runs.files import require_output, write_file
 from ..fields import exported_states
@@ -20,15 +20,11 @@ _SCRIPTS = ("build/three.min.js", "examples/js/controls/OrbitControls.js")
 _HERE = Path(__file__).parent
 
 
-class NoThree(Exception):
-    """three.js cannot be read; the message is one line."""
-
-
 def write_view(run, file, three=THREE):
     """Write the states of a RunFolder as a page of HTML; returns `file`.
 
     three: folder of three.js (r110 to r147) with build/three.min.js and examples/js/controls/OrbitControls.js.
-    NoThree when it lacks them, RunFolderError when a state is damaged or there is none, OSError."""
+    Refused when it lacks them, RunFolderError when a state is damaged or there is none, OSError."""
     require_output(file)
     scripts = _scripts(Path(three))
     page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
@@ -48,7 +44,7 @@ def _scripts(three):
         return [(three / name).read_text(encoding="utf-8") for name in _SCRIPTS]
     except OSError as error:
         need = "three.js must be there (apt-get install libjs-three, or --three FOLDER)"
-        raise NoThree(f"{error.filename}: {error.strerror}; {need}") from None
+        raise Refused(f"{error.filename}: {error.strerror}; {need}") from None
 
 
 def _data(run):
