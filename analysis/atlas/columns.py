@@ -5,7 +5,6 @@ import re
 import numpy as np
 from scipy.optimize import brentq
 
-from ..measures.compression import first_compression
 from ..measures.decided import Pieces, is_recent
 from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.motion import pieces_that_can_meet
@@ -14,7 +13,7 @@ from ..measures.structure import filling_factor, gyration_radius, mean_coordinat
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
-from ..runs.measured import met, time_of_touch
+from ..runs.measured import maximum_of_run, met, time_of_touch
 from ..runs.table import Column, read_table
 from ..theory import Material
 from .rules import KINDS, outcome
@@ -79,11 +78,6 @@ COLUMNS = (
 def read_runs(file):
     """The atlas's table of runs (DataFrame) from a runs.csv; Refused where it is none."""
     return read_table(file, COLUMNS)[0]
-
-
-def is_run_of_the_atlas(run):
-    """Whether the folder of a RunFolder is named as those of the atlas's runs."""
-    return NAME.fullmatch(run.path.name) is not None
 
 
 def measure(run):
@@ -194,11 +188,10 @@ def _spin(run, members):
 
 def _lost_in_compression(run):
     """NaN where the halves never turned around."""
-    history = run.history
-    maximum, _ = first_compression(history["time"], history["d"], history["v"])
+    maximum = maximum_of_run(run)
     if maximum is None or not maximum.inside or not met(run):
         return np.nan
-    parts = fractions_at(history, maximum.time)
+    parts = fractions_at(run.history, maximum.time)
     lost = sum(parts[name] for name in LOST_CHANNELS)
     return lost / (lost + parts["kinetic"])
 

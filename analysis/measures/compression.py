@@ -99,8 +99,7 @@ def maximum_compression(time, d, v):
 
 
 def first_compression(time, d, v):
-    """(Maximum, whether d exceeds it later) of the first compression: until v, once it has fallen through 0, rises
-    again.
+    """Maximum of the first compression: until v, once it has fallen through 0, rises again.
 
     This is d_max everywhere. Aggregates that stuck may creep together further, long after the collision. Arguments
     and None as maximum_compression.
@@ -110,8 +109,7 @@ def first_compression(time, d, v):
     rises = np.flatnonzero((v[:-1] <= 0) & (v[1:] > 0))
     rises = rises[rises > falls[0]] if falls.size else rises[:0]
     end = int(rises[0]) + 1 if rises.size else len(v)
-    first = maximum_compression(time[:end], d[:end], v[:end])
-    return first, bool(first is not None and np.nanmax(d) > first.length)
+    return maximum_compression(time[:end], d[:end], v[:end])
 
 
 def largest_return_speed(time, v, start):

@@ -15,7 +15,7 @@ UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the p
 
 def maximum_of_run(run):
     """compression.Maximum of a RunFolder's first compression; None where d has no value."""
-    return first_compression(run.history["time"], run.history["d"], run.history["v"])[0]
+    return first_compression(run.history["time"], run.history["d"], run.history["v"])
 
 
 def are_equal(run):

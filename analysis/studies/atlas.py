@@ -5,7 +5,7 @@ from math import hypot
 import numpy as np
 import pandas
 
-from ..atlas.columns import COLUMNS, is_run_of_the_atlas, measure
+from ..atlas.columns import COLUMNS, NAME, measure
 from ..atlas.make import SIZES
 from ..atlas.outcome_table import PROBABILITIES, read_outcomes
 from ..atlas.query import outcome, outcomes_file
@@ -37,7 +37,7 @@ EQUAL, HEAD_ON = 0.5, 0.5  # mass ratio at least, impact parameter at most
 
 
 def _measure(run, row):
-    if not is_run_of_the_atlas(run):
+    if not NAME.fullmatch(run.path.name):
         raise NotMeasured(f"{run.path}: no run of the atlas, whose names are numbers")
     values = measure(run)
     return [values[column.name] for column in COLUMNS]

@@ -6,12 +6,12 @@ from functools import partial
 
 import numpy as np
 
-from ..measures.compression import first_compression, largest_return_speed
+from ..measures.compression import largest_return_speed
 from ..measures.structure import mean_coordination
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNELS, HISTORY_FILE, LABELS
 from ..runs.ledger import fractions_at, initial_kinetic_energy
-from ..runs.measured import met
+from ..runs.measured import maximum_of_run, met
 from ..theory import ICE
 from ..theory.aggregates import bcca_strength
 from ..theory.andrews import stress_if_rigid
@@ -23,7 +23,6 @@ from .figures import curves
 from .study import Study
 
 KINDS = ("compressed", "CPE")
-PLACE = ("of", "step", "nominal", "radius", "velocity")
 
 
 # ---- what this study and that of A24 have in common ----
@@ -35,26 +34,25 @@ HEAD_ON_ICE |= {"removeLooseGrains": 0, "initialOverlap": 1.0}
 
 
 def largest_compression(run):
-    """(measures.compression.Maximum, whether d exceeds it later) of a RunFolder's first compression. NotMeasured where
-    the aggregates never met or never turned around, RunFolderError where they had no kinetic energy."""
-    history = run.history
-    maximum, exceeded = first_compression(history["time"], history["d"], history["v"])
+    """measures.compression.Maximum of a RunFolder's first compression. NotMeasured where the aggregates never met or
+    never turned around, RunFolderError where they had no kinetic energy."""
+    maximum = maximum_of_run(run)
     if maximum is None or not maximum.inside or not met(run):
         raise NotMeasured(f"{run.path}: the aggregates have not met, or not turned around")
-    if not initial_kinetic_energy(history) > 0:
+    if not initial_kinetic_energy(run.history) > 0:
         raise RunFolderError(f"{run.path / HISTORY_FILE}: no kinetic energy at the start")
-    return maximum, exceeded
+    return maximum
 
 
 def _return(run, row):
     """NaN where the halves never part, or the record ends before their speed falls."""
-    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run)[0].time)
+    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run).time)
     return [np.nan if value is None else value for value in found]
 
 
 def _changes(run, row):
     """Changes of all channels until the largest compression, and until the end, over K(0)."""
-    times = largest_compression(run)[0].time, run.history["time"][-1]
+    times = largest_compression(run).time, run.history["time"][-1]
     return [part for time in times for part in fractions_at(run.history, time).values()]
 
 
@@ -95,7 +93,7 @@ def _packings(run, row):
 def _compression(run, row):
     """From the first touch on."""
     d, time = (float(run.history[name][np.argmax(run.history["contacts_between"] > 0)]) for name in ("d", "time"))
-    maximum, _ = largest_compression(run)
+    maximum = largest_compression(run)
     return maximum.length - d, maximum.time - time
 
 
@@ -144,7 +142,7 @@ def over_static(runs):
 def rows(runs):
     """Both kinds of aggregates at each place: what the collision adds to the static yield stress, and what the kind
     does."""
-    for (of, step, nominal, radius, velocity), own in runs.groupby(list(PLACE)):
+    for (of, step, nominal, radius, velocity), own in runs.groupby(["of", "step", "nominal", "radius", "velocity"]):
         kinds = [own[own.kind == kind] for kind in KINDS]
         usual = of == "ice" and np.isclose(step, 0.2) and np.isclose(radius, 20)
         place = f"φ = {nominal:g}, {velocity:.3g} m/s" + ("" if usual else f", {of}, R = {radius:g} r, {step:g} t0")

@@ -32,9 +32,8 @@ GRAIN_RADIUS, START = 1e-7, (15.0, 3.0)  # m, of all runs; where fits start: ln 
 
 def _compression(run, row):
     columns.require_papers_grains(run)
-    maximum, exceeded = largest_compression(run)
-    offset = float(run.history["d"][0]) + 2.0 * row["grain_radius"]
-    return offset, maximum.length, maximum.length_error, exceeded, maximum.time, maximum.time_error
+    maximum = largest_compression(run)
+    return float(run.history["d"][0]) + 2.0 * row["grain_radius"], maximum.length, maximum.time
 
 
 def zones_that_meet(position, aggregate, radius, grain_radius):
@@ -64,10 +63,7 @@ MEASURED = (
         _compression,
         Column("offset", "m", "d(0) + 2 r, by which the centres of mass are closer than the spheres' by chance"),
         Column("d_max", "m", "largest compression length of the first compression"),
-        Column("d_max_error", "m", "its error, see measures.compression.Maximum"),
-        Column("exceeded", "", "whether d grows beyond it later", kind="b"),
         Column("t_max", "s", "time of d_max"),
-        Column("t_max_error", "s", "its error"),
     ),
     group(_zones, Column("zone_filling", "", ZONES, gaps=True)),
     *COMPACT,

@@ -14,16 +14,10 @@
   const floats = (text) => new Float32Array(bytes(text).buffer);
   const whole = (text) => new Uint32Array(bytes(text).buffer);
   const radius = floats(data.radius), count = radius.length;
-  const unpacked = [];
-  function state(number) { // unpacked once
-    if (!unpacked[number]) {
-      const packed = data.states[number];
-      unpacked[number] = {
-        time: packed.time, cell: packed.cell, planes: packed.planes, position: floats(packed.position), colours: packed.colours,
-        first: whole(packed.first), between: floats(packed.between), bonded: bytes(packed.bonded),
-      };
-    }
-    return unpacked[number];
+  function state(number) {
+    const packed = data.states[number];
+    const contacts = { first: whole(packed.first), between: floats(packed.between), bonded: bytes(packed.bonded) };
+    return { ...packed, ...contacts, position: floats(packed.position) };
   }
 
   // ---- legends ----
