@@ -50,17 +50,6 @@ def _return(run, row):
     return [np.nan if value is None else value for value in found]
 
 
-def _changes(run, row):
-    """Changes of all channels until the largest compression, and until the end, over K(0)."""
-    times = largest_compression(run).time, run.history["time"][-1]
-    return [part for time in times for part in fractions_at(run.history, time).values()]
-
-
-def _channels_until(name, when):
-    meaning = "{}, change from the start to {} (kinetic: what is left)"
-    return (Column(name.format(c), "K(0)", meaning.format(LABELS[c], when)) for c in CHANNELS)
-
-
 _contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)
 COMPACT = (  # without gaps last, so that a row that was cut short is noticed
     one("coordination", "", "mean number of contacts of a grain at the start", _contacts),
@@ -71,7 +60,13 @@ COMPACT = (  # without gaps last, so that a row that was cut short is noticed
         Column("return_speed", "m/s", "largest speed at which the halves part after t_max", gaps=True),
         Column("return_time", "s", "its time", gaps=True),
     ),
-    group(_changes, *_channels_until(AT_MAXIMUM, "t_max"), *_channels_until("{}_at_end", "the end")),
+    group(
+        lambda run, row: fractions_at(run.history, largest_compression(run).time).values(),
+        *(
+            Column(AT_MAXIMUM.format(c), "K(0)", f"{LABELS[c]}, change until t_max (kinetic: what is left)")
+            for c in CHANNELS
+        ),
+    ),
 )
 
 # ---- what is this study's own ----

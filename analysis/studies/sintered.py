@@ -17,7 +17,7 @@ from ..runs.measured import derived_constants
 from ..theory.bonds import breaking_energy, stretching_period
 from ..theory.pair_constants import ICE, pair_constants
 from . import columns
-from .columns import Column, NotMeasured, constant, group, one, parameter
+from .columns import Column, NotMeasured, constant, group, parameter
 from .comparison import Row
 from .estimates import beside, ending, estimate, mean, threshold, where
 from .figures import curves, snapshots
@@ -86,7 +86,6 @@ def _parts(run, row):
     return *after(end), *(sum(after(number * period)[:2]) for number in TIMES)
 
 
-_ended = lambda run: bool(run.history["time"][-1] < 0.999 * float(run.parameters["duration"]))
 MEASURED = (
     parameter("planar", "", "1: grains in a plane", "i"),
     parameter("neck", "", "beta; 0: unsintered"),
@@ -129,7 +128,6 @@ MEASURED = (
         Column("loops", "", "independent loops of contacts in both aggregates at the end", gaps=True),
         Column("loop_grains", "", "grains in loops", gaps=True),
     ),
-    one("ended_by", "", "whether the run ended before its duration: nothing could meet or break", _ended, kind="b"),
     columns.CLOSURE,
     columns.END,
 )

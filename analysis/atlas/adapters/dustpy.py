@@ -118,9 +118,6 @@ class AtlasInDustPy:
         self.mass = np.array(sim.grid.m)
         self.smaller, self.larger = np.triu_indices(len(self.mass))
         self.pairs = np.s_[1:-1, self.smaller, self.larger]  # of a field (Nr, Nm, Nm), without the first and last cell
-        self._number = np.zeros((len(self.mass), len(self.mass)), dtype=int)  # of the pair at each place of (Nm, Nm)
-        for order in ((self.smaller, self.larger), (self.larger, self.smaller)):
-            self._number[order] = np.arange(len(self.smaller))
         self._curves_of = self._stick = None
 
     def breaking(self, sim):
@@ -177,8 +174,8 @@ class AtlasInDustPy:
 
     def _field(self, values):
         """(Nr, Nm, Nm) of (Nr - 2, pairs): symmetric, 0 in the first and last radial cell."""
-        full = np.zeros((len(values) + 2, *self._number.shape))
-        full[1:-1] = values.take(self._number, axis=1)
+        full = np.zeros((len(values) + 2, len(self.mass), len(self.mass)))
+        full[1:-1, self.smaller, self.larger] = full[1:-1, self.larger, self.smaller] = values
         return full
 
     def _query(self, sim, speeds=None):
