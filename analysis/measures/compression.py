@@ -115,15 +115,15 @@ def first_compression(time, d, v):
 def largest_return_speed(time, v, start):
     """(speed [m/s], time [s]) at which the halves part fastest after the largest compression (A24 section 5.3).
 
-    That is minus the minimum of v (T,) after `start`; (None, None) if v is never negative then, or if its minimum is
-    the last sample, so that the speed may still grow."""
+    That is minus the minimum of v (T,) after `start`; NaN if v is never negative then, or if its minimum is the last
+    sample, so that the speed may still grow."""
     time, v = np.asarray(time, dtype=float), np.asarray(v, dtype=float)
     later = np.flatnonzero((time >= start) & np.isfinite(v))
     if not later.size:
-        return None, None
+        return np.nan, np.nan
     place = later[np.argmin(v[later])]
     if v[place] >= 0.0 or place == later[-1]:
-        return None, None
+        return np.nan, np.nan
     return float(-v[place]), float(time[place])
 
 

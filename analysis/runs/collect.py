@@ -79,10 +79,6 @@ def joined(origins):
 
 def provenance_lines(origin):
     """The same as lines of text."""
-    made = sum(origin["commits"].values())
-    more = (
-        "" if made == origin["runs"] else f" (with those that others replaced {made}, to which the following belongs)"
-    )
-    yield f"{origin['runs']} runs{more}, {origin['steps']} steps, {origin['hours']:g} h of run time"
+    yield f"{origin['runs']} runs; with those replaced {origin['steps']} steps, {origin['hours']:g} h of run time"
     for key, text in _COUNTED.items():
         yield f"{text}: " + "; ".join(f"{name} ({number} runs)" for name, number in origin[key].items())

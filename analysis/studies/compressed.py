@@ -46,8 +46,7 @@ def largest_compression(run):
 
 def _return(run, row):
     """NaN where the halves never part, or the record ends before their speed falls."""
-    found = largest_return_speed(run.history["time"], run.history["v"], largest_compression(run).time)
-    return [np.nan if value is None else value for value in found]
+    return largest_return_speed(run.history["time"], run.history["v"], largest_compression(run).time)
 
 
 _contacts = lambda run: mean_coordination(len(run.start.radius), run.start.contact_pairs)

@@ -68,6 +68,7 @@ def _data(run):
 
 def _state(exported, of, origin, unit):
     state = exported.state
+    planes = [] if state.plane_axis is None else zip(state.plane_axis, state.plane_position)
     return {
         "time": state.time,
         "position": _packed((exported.inside() - origin) / unit, "<f4"),
@@ -75,16 +76,9 @@ def _state(exported, of, origin, unit):
         "first": _packed(exported.first, "<u4"),
         "between": _packed(exported.between / unit, "<f4"),
         "bonded": _packed(state.contact_bonded, "u1"),
-        "planes": _planes(state, origin, unit),
+        "planes": [[int(axis), float((place - origin[axis]) / unit)] for axis, place in planes],
         "cell": None if state.cell_size is None else [(state.cell_size / unit).tolist(), (-origin / unit).tolist()],
     }
-
-
-def _planes(state, origin, unit):
-    """[axis, place on it] of each."""
-    if state.plane_axis is None:
-        return []
-    return [[int(a), float((x - origin[a]) / unit)] for a, x in zip(state.plane_axis, state.plane_position)]
 
 
 def _packed(array, kind):
