@@ -84,17 +84,11 @@ namespace avx2 {
 	}
 
 	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6]) { scatterAdd(grains, index, values); }
-
-	static void integrate(
-	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
-	{
-		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, range);
-	}
 }
 }
 
 #include "force_pass.hpp"
 
 namespace contact_law {
-InstructionSet avx2Passes() { return allPasses<avx2::Pack>("avx2", &avx2::integrate); }
+InstructionSet avx2Passes() { return allPasses<avx2::Pack>("avx2", &integrateOneByOne<avx2::Pack>); }
 }

@@ -7,16 +7,14 @@ namespace contact_law {
 
 void copyMotion(const GrainMotion& g, Grain& grain)
 {
-	grain.x = g.position[0], grain.y = g.position[1], grain.z = g.position[2];
-	grain.vx = g.velocity[0], grain.vy = g.velocity[1], grain.vz = g.velocity[2];
-	grain.wx = g.angularVelocity[0], grain.wy = g.angularVelocity[1], grain.wz = g.angularVelocity[2];
+	grain.x = g.position.x, grain.y = g.position.y, grain.z = g.position.z;
+	grain.vx = g.velocity.x, grain.vy = g.velocity.y, grain.vz = g.velocity.z;
+	grain.wx = g.angularVelocity.x, grain.wy = g.angularVelocity.y, grain.wz = g.angularVelocity.z;
 }
 
 void copyMotion(const Grain& grain, GrainMotion& g)
 {
-	g.position[0] = grain.x, g.position[1] = grain.y, g.position[2] = grain.z;
-	g.velocity[0] = grain.vx, g.velocity[1] = grain.vy, g.velocity[2] = grain.vz;
-	g.angularVelocity[0] = grain.wx, g.angularVelocity[1] = grain.wy, g.angularVelocity[2] = grain.wz;
+	g.position = positionOf(grain), g.velocity = velocityOf(grain), g.angularVelocity = spinOf(grain);
 }
 
 void kick(const SharedState& shared, Grain& p, int k, double time)
@@ -110,8 +108,7 @@ void Dynamics::changeForce(Domain& domain, int k, Vec3<double> force, Vec3<doubl
 
 void Dynamics::setMeanField(const Vec3<double>& added, const Vec3<double>& convective)
 {
-	const auto same = [](const Vec3<double>& a, const Vec3<double>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
-	if (same(added, { 0, 0, 0 }) && same(convective, shared.convective)) return;
+	if (added == Vec3<double> { 0, 0, 0 } && convective == shared.convective) return;
 	for (auto& domain : domains)
 		domain->ledger.meanField += domain->kineticEnergy();
 	kickAll(0.5 * shared.dt);

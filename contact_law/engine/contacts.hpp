@@ -96,11 +96,9 @@ struct Fastest {
 Fastest fastestGrain(const Dynamics&);
 struct Overlap {
 	int first = -1, second = -1;
-	double overlap = 0; // over the smaller radius
+	double overlap = -1e300; // over the smaller radius; beyond 1 no law holds
 };
-// A grain's deepest contact, before the grains moved in the latest step: what pushed was the force there.
-Overlap deepestBefore(const Dynamics&, int id);
-// The deepest contact of all, if it overlaps by more than the smaller of its radii (no law holds there).
-Overlap deepestOverlap(const Dynamics&);
+// The deepest contact of a grain, or of all (id -1), where the grains were a time `ago` [s].
+Overlap deepestOverlap(const Dynamics&, double ago = 0, int id = -1);
 
 } // namespace contact_law

@@ -16,8 +16,7 @@ struct OutsideForce {
 
 	friend bool operator==(const OutsideForce& a, const OutsideForce& b)
 	{
-		const auto same = [](const Vec3<double>& u, const Vec3<double>& v) { return u.x == v.x && u.y == v.y && u.z == v.z; };
-		return a.grain == b.grain && same(a.force, b.force) && same(a.torque, b.torque);
+		return a.grain == b.grain && a.force == b.force && a.torque == b.torque;
 	}
 };
 

@@ -12,7 +12,7 @@ namespace {
 	{
 		std::vector<Vec3<double>> positions;
 		for (const GrainInput& g : grains)
-			positions.push_back({ g.position[0], g.position[1], g.position[2] });
+			positions.push_back(g.position);
 		return positions;
 	}
 
@@ -287,8 +287,8 @@ void Dynamics::read(std::vector<GrainMotion>& grains) const
 			Grain change {};
 			contact_law::kickEarly(shared, early, change, shared.dt);
 			GrainMotion& g = grains[original[early.grain]];
-			g.velocity[0] += change.vx, g.velocity[1] += change.vy, g.velocity[2] += change.vz;
-			g.angularVelocity[0] += change.wx, g.angularVelocity[1] += change.wy, g.angularVelocity[2] += change.wz;
+			g.velocity = g.velocity + velocityOf(change);
+			g.angularVelocity = g.angularVelocity + spinOf(change);
 		}
 }
 

@@ -11,7 +11,7 @@ namespace contact_law {
 
 // What a step or a script changes of a grain; everything of one moment. Positions in m, velocities in m/s, angular velocities in rad/s.
 struct GrainMotion {
-	double position[3], velocity[3], angularVelocity[3];
+	Vec3<double> position, velocity, angularVelocity;
 	unsigned blocked = 0;                     // degrees of freedom (kernel/blocked.hpp)
 	Orientation orientation = { 1, 0, 0, 0 }; // followed only with Options::orientations
 };
@@ -132,8 +132,7 @@ public:
 	const SharedState& state() const { return shared; }
 	const std::vector<std::unique_ptr<Domain>>& parts() const { return domains; }
 	int given(int here) const { return original[here]; } // a grain's index as given, by its index in state()
-	int here(int given) const { return indexHere[given]; }
-	int id(int given) const { return ids[given]; } // of a grain, as its owner calls it
+	int id(int given) const { return ids[given]; }       // of a grain, as its owner calls it
 	int grainCount() const { return count; }
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }

@@ -59,12 +59,6 @@ namespace portable {
 	}
 
 	static inline void scatterAddInOrder(Grain* grains, const int* index, const Pack values[6]) { scatterAdd(grains, index, values); }
-
-	static void integrate(
-	        Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange& range)
-	{
-		integrateOneByOne<Pack>(begin, end, inverseMass, inverseInertia, dt, range);
-	}
 }
 }
 
@@ -72,7 +66,7 @@ namespace portable {
 
 namespace contact_law {
 
-InstructionSet portablePasses() { return allPasses<portable::Pack>("portable", &portable::integrate); }
+InstructionSet portablePasses() { return allPasses<portable::Pack>("portable", &integrateOneByOne<portable::Pack>); }
 
 // Each compiled for its instruction set as a whole: to be called only on a machine that has it. Nor may these files define anything that
 // the linker might take for all of the plugin, such as functions of std::vector.

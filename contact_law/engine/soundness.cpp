@@ -125,26 +125,17 @@ Fastest fastestGrain(const Dynamics& dynamics)
 	return found;
 }
 
-Overlap deepestBefore(const Dynamics& dynamics, int id)
+Overlap deepestOverlap(const Dynamics& dynamics, double ago, int id)
 {
-	Overlap deepest;
-	for (const auto& domain : dynamics.parts())
-		eachOverlap(dynamics, *domain, dynamics.state().dt, [&](const Overlap& one) {
-			const bool its = one.first == id || one.second == id;
-			if (its && (deepest.first < 0 || one.overlap > deepest.overlap)) deepest = one;
-		});
-	return deepest;
-}
-
-Overlap deepestOverlap(const Dynamics& dynamics)
-{
-	std::vector<Overlap> worst(dynamics.parts().size());
+	std::vector<Overlap> deepest(dynamics.parts().size());
 #pragma omp parallel for num_threads(dynamics.threadCount())
-	for (std::size_t d = 0; d < worst.size(); ++d)
-		eachOverlap(dynamics, *dynamics.parts()[d], 0, [&](const Overlap& one) {
-			if (one.overlap > std::max(1., worst[d].overlap)) worst[d] = one;
+	for (std::size_t d = 0; d < deepest.size(); ++d)
+		eachOverlap(dynamics, *dynamics.parts()[d], ago, [&](const Overlap& one) {
+			const bool its = id < 0 || one.first == id || one.second == id;
+			if (its && (deepest[d].first < 0 || one.overlap > deepest[d].overlap)) deepest[d] = one;
 		});
-	return *std::max_element(worst.begin(), worst.end(), [](const Overlap& a, const Overlap& b) { return a.overlap < b.overlap; });
+	const auto less = [](const Overlap& a, const Overlap& b) { return a.overlap < b.overlap; };
+	return *std::max_element(deepest.begin(), deepest.end(), less);
 }
 
 } // namespace contact_law

@@ -44,6 +44,7 @@ template <class T> inline Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) 
 template <class T> inline Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) { return { a.x - b.x, a.y - b.y, a.z - b.z }; }
 template <class T> inline Vec3<T> operator-(const Vec3<T>& a) { return { -a.x, -a.y, -a.z }; }
 template <class T> inline Vec3<T> operator*(const T& s, const Vec3<T>& a) { return { s * a.x, s * a.y, s * a.z }; }
+inline bool operator==(const Vec3<double>& a, const Vec3<double>& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 template <class T> inline T dot(const Vec3<T>& a, const Vec3<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 template <class T> inline Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b)
 {

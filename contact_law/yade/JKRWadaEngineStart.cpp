@@ -2,23 +2,17 @@
 // leaves behind.
 #include "JKRWadaEngineRun.hpp"
 #include "SceneShapes.hpp"
-#include <algorithm>
-#include <iterator>
+#include <set>
 
 namespace yade {
 
 using contact_law::Dynamics;
 
 namespace {
-	// YADE's engines that add forces: after this engine theirs would come a step late, or never, where a ForceResetter is first.
-	constexpr const char* enginesOfForces[] = { "AxialGravityEngine", "CentralConstantAccelerationEngine", "DragEngine", "ForceEngine",
-		"GravityEngine", "HarmonicForceEngine", "HdapsGravityEngine", "HydroForceEngine", "InterpolatingDirectedForceEngine",
-		"LinearDragEngine", "RadialForceEngine", "TorqueEngine" };
-
-	bool addsForces(const std::string& engine)
-	{
-		return std::find(std::begin(enginesOfForces), std::end(enginesOfForces), engine) != std::end(enginesOfForces);
-	}
+	// A ForceResetter after this engine would empty what it writes; forces that are added there would come a step late, or never.
+	const std::set<std::string> enginesBefore { "ForceResetter", "AxialGravityEngine", "CentralConstantAccelerationEngine",
+		"DragEngine", "ForceEngine", "GravityEngine", "HarmonicForceEngine", "HdapsGravityEngine", "HydroForceEngine",
+		"InterpolatingDirectedForceEngine", "LinearDragEngine", "RadialForceEngine", "TorqueEngine" };
 }
 
 // Every scene has one engine that moves its grains.
@@ -29,19 +23,15 @@ void JKRWadaEngine::requireAlone(const Scene& scene)
 	for (const auto& engine : scene.engines) {
 		if (engine->dead) continue;
 		const std::string name = engine->getClassName();
-		if (name == "NewtonIntegrator")
-			refuseInEngine(
-			        "NewtonIntegrator is among O.engines too; this engine replaces it (gravity: a GravityEngine before it)");
-		if (name == "InteractionLoop") refuseInEngine("InteractionLoop is among O.engines too; this engine replaces it");
-		if (engines && (name == "ForceResetter" || addsForces(name))) late = name;
+		if (name == "NewtonIntegrator" || name == "InteractionLoop")
+			refuseInEngine(name + " is among O.engines too; this engine replaces it (gravity: a GravityEngine before it)");
+		if (engines && enginesBefore.count(name)) late = name;
 		engines += bool(dynamic_cast<const JKRWadaEngine*>(engine.get()));
 	}
 	if (engines > 1)
 		refuseInEngine(
 		        "O.engines has " + std::to_string(engines) + " JKRWadaEngines: there must be one, which moves all grains once");
-	if (late == "ForceResetter")
-		refuseInEngine("ForceResetter comes after this engine in O.engines, and would empty what it writes: must come before");
-	if (!late.empty()) refuseInEngine(late + " comes after this engine in O.engines, too late for its forces: must come before");
+	if (!late.empty()) refuseInEngine(late + " comes after this engine in O.engines, too late for O.forces: must come before");
 }
 
 JKRWadaEngine::Settings JKRWadaEngine::settings() const

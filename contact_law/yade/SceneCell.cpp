@@ -9,7 +9,6 @@ using Vec3d = contact_law::Vec3<double>;
 
 namespace {
 	Vec3d diagonal(const Matrix3r& m) { return { m(0, 0), m(1, 1), m(2, 2) }; }
-	bool same(const Vec3d& a, const Vec3d& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 	void requireDiagonal(const Matrix3r& m, const char* name, const char* what)
 	{
@@ -57,7 +56,7 @@ void SceneCell::require(const Scene& scene, const Dynamics& dynamics) const
 	if (!scene.isPeriodic) return;
 	requireBox(*scene.cell);
 	const Vec3d was = diagonal(scene.cell->prevHSize);
-	if (!same(was, size))
+	if (!(was == size))
 		refuseInEngine("O.cell was given another size " + sizeText(was) + " m by a script, after the start with " + sizeText(size)
 		        + " m: it must change by O.cell.velGrad only; or make a new engine");
 }

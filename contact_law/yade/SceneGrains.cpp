@@ -9,30 +9,17 @@ using contact_law::GrainInput;
 using contact_law::GrainMotion;
 
 namespace {
-	void copy(const Vector3r& from, double* to)
-	{
-		for (int k = 0; k < 3; ++k)
-			to[k] = from[k];
-	}
-	bool same(const Vector3r& x, const double (&y)[3]) { return x[0] == y[0] && x[1] == y[1] && x[2] == y[2]; }
-	Vector3r eigen(const double (&x)[3]) { return Vector3r(x[0], x[1], x[2]); }
-
 	GrainMotion motionOf(const State& s)
 	{
-		GrainMotion g {};
-		copy(s.pos, g.position);
-		copy(s.vel, g.velocity);
-		copy(s.angVel, g.angularVelocity);
-		g.blocked = s.blockedDOFs;
-		g.orientation = { s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() };
-		return g;
+		return { toKernel(s.pos), toKernel(s.vel), toKernel(s.angVel), s.blockedDOFs,
+			{ s.ori.w(), s.ori.x(), s.ori.y(), s.ori.z() } };
 	}
 
 	bool sameMotion(const State& s, const GrainMotion& g, bool orientations)
 	{
 		const contact_law::Orientation& q = g.orientation;
 		if (orientations && !(s.ori.w() == q.w && s.ori.x() == q.x && s.ori.y() == q.y && s.ori.z() == q.z)) return false;
-		return same(s.pos, g.position) && same(s.vel, g.velocity) && same(s.angVel, g.angularVelocity)
+		return toKernel(s.pos) == g.position && toKernel(s.vel) == g.velocity && toKernel(s.angVel) == g.angularVelocity
 		        && s.blockedDOFs == g.blocked;
 	}
 
@@ -66,7 +53,7 @@ namespace {
 
 bool finite(const GrainMotion& g)
 {
-	const auto all = [](const double(&x)[3]) { return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]); };
+	const auto all = [](const contact_law::Vec3<double>& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
 	const contact_law::Orientation& q = g.orientation;
 	return all(g.position) && all(g.velocity) && all(g.angularVelocity) && std::isfinite(q.w + q.x + q.y + q.z);
 }
@@ -193,9 +180,9 @@ void SceneGrains::write(std::vector<GrainMotion>& now, bool orientations, int th
 #pragma omp parallel for num_threads(threads)
 	for (std::size_t k = 0; k < now.size(); ++k) {
 		State& s = *bodies[k].state;
-		s.pos = eigen(now[k].position);
-		s.vel = eigen(now[k].velocity);
-		s.angVel = eigen(now[k].angularVelocity);
+		s.pos = fromKernel(now[k].position);
+		s.vel = fromKernel(now[k].velocity);
+		s.angVel = fromKernel(now[k].angularVelocity);
 		const contact_law::Orientation& q = now[k].orientation;
 		if (orientations) s.ori = Quaternionr(q.w, q.x, q.y, q.z);
 	}

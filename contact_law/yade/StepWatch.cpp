@@ -12,9 +12,10 @@ namespace {
 	// Of all energies. Ledgers of runs that are merely coarse (half a t0, 100 m/s) are off by a few per cent at most.
 	constexpr double lossRegained = 0.1, sumChanged = 0.5;
 
+	// Before the grains moved in the latest step: what pushed was the force there.
 	std::string withItsContact(const Dynamics& dynamics, int id)
 	{
-		const contact_law::Overlap deepest = contact_law::deepestBefore(dynamics, id);
+		const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics, dynamics.state().dt, id);
 		if (deepest.first < 0) return "; it touches no other";
 		return "; its deepest contact is with " + bodyName(deepest.first == id ? deepest.second : deepest.first) + " (overlap "
 		        + rounded(deepest.overlap) + " of the smaller radius)";
@@ -24,7 +25,7 @@ namespace {
 std::string StepWatch::tooDeep(const Dynamics& dynamics)
 {
 	const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics);
-	if (deepest.first < 0) return "";
+	if (!(deepest.overlap > 1)) return "";
 	return bodyName(std::min(deepest.first, deepest.second)) + " and " + bodyName(std::max(deepest.first, deepest.second))
 	        + " overlap by " + rounded(deepest.overlap) + " of the smaller radius";
 }

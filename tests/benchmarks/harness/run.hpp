@@ -15,13 +15,6 @@ using contact_law::Vec3;
 inline Vec3<double> vector(const double (&x)[3]) { return { x[0], x[1], x[2] }; }
 inline void set(double (&x)[3], const Vec3<double>& v) { x[0] = v.x, x[1] = v.y, x[2] = v.z; }
 
-template <class From, class To> void copyMoving(const From& from, To& to)
-{
-	std::memcpy(to.position, from.position, sizeof to.position);
-	std::memcpy(to.velocity, from.velocity, sizeof to.velocity);
-	std::memcpy(to.angularVelocity, from.angularVelocity, sizeof to.angularVelocity);
-}
-
 inline Dynamics::Materials materialsOf(const Scene& scene)
 {
 	Dynamics::Materials materials;
@@ -35,7 +28,9 @@ inline Dynamics::Grains grainsOf(const Scene& scene)
 	Dynamics::Grains grains;
 	for (const GrainRecord& record : scene.grains) {
 		GrainInput grain {};
-		copyMoving(record, grain);
+		grain.position = vector(record.position);
+		grain.velocity = vector(record.velocity);
+		grain.angularVelocity = vector(record.angularVelocity);
 		grain.blocked = unsigned(record.blocked);
 		grain.radius = record.radius, grain.mass = record.mass, grain.inertia = record.inertia;
 		grain.kind = int(record.material);
@@ -119,8 +114,11 @@ public:
 		Scene now = scene;
 		std::vector<GrainMotion> motions;
 		engine->read(motions);
-		for (std::size_t k = 0; k < motions.size(); ++k)
-			copyMoving(motions[k], now.grains[k]);
+		for (std::size_t k = 0; k < motions.size(); ++k) {
+			set(now.grains[k].position, motions[k].position);
+			set(now.grains[k].velocity, motions[k].velocity);
+			set(now.grains[k].angularVelocity, motions[k].angularVelocity);
+		}
 		if (scene.periodic()) set(now.head.cellSize, engine->cell().size);
 		now.contacts.clear();
 		const auto keep = [&](const auto& list, int slot, int, int) {
