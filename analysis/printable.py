@@ -53,10 +53,10 @@ def suggested(name, names, many=""):
     return hint + (many if hint and len(names) > LISTED else f"; must be one of {', '.join(names)}")
 
 
-def meant(name, names, before=""):
-    """' (did you mean ...?)' with that one of `names` which is close to a name, and what stands before it; or ''."""
+def meant(name, names):
+    """' (did you mean ...?)' with that one of `names` which is close to a name; or ''."""
     close = get_close_matches(name, names, 1)
-    return f" (did you mean {before}{close[0]}?)" if close else ""
+    return f" (did you mean {close[0]}?)" if close else ""
 
 
 def _escape(c):

@@ -13,7 +13,7 @@ from ..theory.pair_constants import GRAIN_RADII
 from .columns import read_runs
 from .outcome_table import ERRORS, INSIDE, INTERVALS, PROBABILITIES, read_outcomes
 from .rules import KINDS, change, largest_after
-from .variables import FEATURES, GROWN, MARGIN, STRUCTURES, Region, breaking_velocity, of_structure, variables
+from .variables import GROWN, STRUCTURES, Region, breaking_velocity, of_structure
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 RUNS_FILE = FOLDER / "runs.csv"
@@ -160,7 +160,11 @@ def in_words(options):
     without = "" if known else "; the answer is that of the nearest data, its error is not known"
     # The repository has the runs, an installed package has not.
     region = Region(of_structure(read_runs(RUNS_FILE), options.structure)) if RUNS_FILE.exists() else None
-    yield from (line + without for line in _beyond(region, point, answer["inside"]))
+    if answer[INSIDE] < 1:
+        axes = _table(outcomes_file(options.structure, options.impact is None), options.maxwell).axes
+        far = [axis for axis in axes if axis.beyond(point[axis.name][0])]
+        ends = "".join(f", {a.name} {point[a.name][0]:.3g} beyond {a.nodes[0]:.2g} to {a.nodes[-1]:.3g}" for a in far)
+        yield f"  EXTRAPOLATION: inside = {answer[INSIDE]:.3g} (1: within the data){ends}{without}"
     for kind, name, error in zip(KINDS, PROBABILITIES, ERRORS):
         low, high = np.clip([answer[name] - answer[error], answer[name] + answer[error]], 0, 1)
         interval = f"  ({low:.3f} to {high:.3f})" if known else ""
@@ -174,22 +178,6 @@ def in_words(options):
         yield "nearest runs:"
         for run in region.runs.iloc[region.nearest(point, options.impact is None)[0]].itertuples():
             yield from _run(run)
-
-
-def _beyond(region, point, inside):
-    """A line where the answer is an extrapolation, or where it cannot be compared with the runs."""
-    if region is None:
-        yield "  within the data" if inside == 1 else f"  EXTRAPOLATION: inside = {inside:.4g} in the table of outcomes"
-    elif (beyond := region.beyond(point)[0]) > MARGIN:
-        line = f"  EXTRAPOLATION: {beyond:.2g} times the scatter of the runs beyond the region that they fill"
-        of_runs = variables(region.runs)
-        for name in FEATURES[:-1]:
-            own, low, high = point[name][0], of_runs[name].min(), of_runs[name].max()
-            if not low <= own <= high:
-                line += f", {name} {own:.3g} beyond {low:.2g} to {high:.3g}"
-        yield line
-    elif inside < 1:
-        yield f"  at the edge of the data: inside = {inside:.4g} in the table of outcomes"
 
 
 def _run(run):

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas
-from scipy.spatial import ConvexHull, QhullError, cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..theory import ICE, interaction_energies, pair_constants, sticking_velocity_without_drag
@@ -109,7 +109,7 @@ class Region:
     """The region that the decided rows of a table of runs fill, and which of these rows are near to a point.
 
     Distances are in the coordinates of scaled(), each in units of its scatter among the runs; averaged: without the
-    impact parameter. `runs` are the rows. ValueError where they fill no region.
+    impact parameter. `runs` are the rows.
     """
 
     def __init__(self, table):
@@ -119,11 +119,7 @@ class Region:
         self._scatter = points.std(axis=0)
         place = points / self._scatter
         self._trees = {True: cKDTree(place[:, :-1]), False: cKDTree(place)}
-        try:
-            self._faces = ConvexHull(place[:, :-1]).equations
-        except (QhullError, ValueError):
-            number = place.shape[1] - 1
-            raise ValueError(f"{len(points)} runs: fill no region in {number} variables; must be more") from None
+        self._faces = ConvexHull(place[:, :-1]).equations
 
     def nearest(self, points, averaged):
         """Rows (n, NEAREST) of `runs` that are nearest to points."""
