@@ -84,7 +84,8 @@ def read_table(file, columns):
         raise Refused(f"{file}: lacks the column {', '.join(lacking)}")
     for column in columns:
         _check(file, column, table[column.name])
-    return table.assign(**{FOLDER: None}), head
+    # .copy(): pandas 3 warns of a table that is made of many pieces.
+    return table.copy().assign(**{FOLDER: None}), head
 
 
 def _check(file, column, values):

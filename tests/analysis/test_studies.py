@@ -95,7 +95,7 @@ def test_every_gallery_is_one_screen_and_follows_from_its_runs(name, capsys, tmp
         away = np.abs(made - kept[column]) - 1e-6 * np.abs(kept[column])
         assert np.array_equal(np.isnan(made), kept[column].isna()) and not (away > error).any()
     words = [row["word"] for row in found.values()]
-    assert words == kept.word.fillna("").tolist()
+    assert words == kept.word.astype(object).fillna("").tolist()
     table = page.split(comparison.START)[1].split(comparison.END)[0]
     shown = [line.split(" | ") for line in table.splitlines() if line.startswith("| ")][1:]
     assert len(shown) <= 8
