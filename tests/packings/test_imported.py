@@ -101,6 +101,7 @@ FORMATS = {
     "legacy VTK": legacy_vtk,
     "XML of VTK": vtp,
     "pyFracAggregate": yaml_of,
+    "a count and rows": lambda t: rows(t, "{n}\n"),
     "FracVAL": lambda t: rows(t, row="  {1}  {2}  {3}  {4}    "),
     "PyFracVAL": lambda t: rows(t, "# simulation_parameters:\n#   N: {n}\n#   - -242.92\n"),
     "npz": lambda t: npz(pos=t[:, :3].astype(float), radii=t[:, 3].astype(float)),

@@ -166,7 +166,7 @@ class Table(NamedTuple):
 
 
 def _of_text(text, names):
-    lines = text.split("\n")
+    lines = re.split(r"\r\n?|\n", text)
     table = _find_table(lines)
     names = names or table.names
     if names is None:
@@ -196,6 +196,8 @@ def _find_table(lines):
     if next(filter(None, head)).startswith("ITEM:"):
         return _dump(lines)
     if head[0].isdecimal():
+        if head[1:2] != [""] and sum(map(bool, map(str.strip, lines))) == int(head[0]) + 1:  # without a line about them
+            return _plain(["", *lines[1:]])
         return _xyz(lines)
     atoms = [number for number, line in enumerate(head) if re.match(r"\d+\s+atoms\b", line)]
     if atoms and (section := next((n for n, line in enumerate(lines) if re.match(r"Atoms\b", line)), None)):
@@ -329,8 +331,8 @@ def _plain(lines):
 
 
 def _words(line, separator=None):
-    """The cells of a line, without what is in it after # and a separator at its end."""
-    line = line.partition("#")[0].strip()
+    """The cells of a line, without a comment and a separator at its end."""
+    line = re.sub(r"\s#\s.*", "", line).strip()
     if separator == "\t" or separator and separator in line:
         return [word.strip() for word in line.rstrip(separator).split(separator)]
     return re.findall(r'"[^"]*"|[^\s,;]+', re.sub(r"\s+(?=[\[(])", "", line))
