@@ -39,6 +39,13 @@ def runs(paths):
     return of
 
 
+def test_a_cell_may_hold_blanks(tmp_path):
+    cells = {"description": "a", "file": "my packings/it's #1.npz", "out": "my runs/a"}
+    table.write(tmp_path / "a.table", [cells])
+    (row,) = table.read(tmp_path / "a.table")
+    assert {"description": row.description, **row.cells} == cells
+
+
 def test_the_example_in_git_is_what_its_study_writes(paths):
     assert Path(paths["elastoplastic-first"]).read_text() == Path(STUDIES, "elastoplastic-first.table").read_text()
 

@@ -1,10 +1,13 @@
-"""yade-batch's tables read and written without YADE, by the rules of its TableParamReader."""
+"""yade-batch's tables read and written without YADE, by the rules of its TableParamReader; beside them a cell in quotes
+may hold blanks and #."""
 
 import re
 from dataclasses import dataclass
 
 from analysis.runs.files import write_file
 from yade_scripts.parameters import InputError
+
+CELL = re.compile(r"""#.*|"[^"]*"(?![^\s#])|'[^']*'(?![^\s#])|[^\s#]+""")
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,7 @@ def read(path):
     read, a row has another number of cells than the header, two columns have one name, or there are no rows."""
     try:
         with open(path, encoding="utf-8-sig") as file:  # some editors begin a file with a byte order mark
-            lines = [re.sub(r"\s*#.*", "", line).split() for line in file]
+            lines = [[_plain(cell) for cell in CELL.findall(line) if cell[0] != "#"] for line in file]
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "has bytes that are not UTF-8"
         raise InputError(f"{path}: {reason}; must be a table of parameters") from None
@@ -63,8 +66,20 @@ def read(path):
 def write(path, rows, comment=""):
     """Write [{column: text}] as a table, * where a row has no such column; comment: lines for its head."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
-    cells = [columns] + [[str(row.get(name, "*")) for name in columns] for row in rows]
+    cells = [columns] + [[quoted(str(row.get(name, "*"))) for name in columns] for row in rows]
     widths = [max(map(len, column)) for column in zip(*cells)]
     text = "".join(f"# {line}\n" for line in comment.splitlines())
     text += "".join("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip() + "\n" for line in cells)
     write_file(path, text)
+
+
+def quoted(text):
+    """A cell's text as it stands in a table; None where it cannot."""
+    if not re.search(r"[\s#]", text):
+        return text
+    mark = next((mark for mark in "\"'" if mark not in text), None)
+    return f"{mark}{text}{mark}" if mark and text.isprintable() else None
+
+
+def _plain(cell):
+    return cell[1:-1] if cell[0] in "\"'" and re.search(r"[\s#]", cell) else cell

@@ -111,6 +111,6 @@ def _listed(name, value):
 def _text(name, value, column=None):
     """A value as the cell of a table; True and False stand for 1 and 0 where the parameter's column is a switch."""
     text = str(int(value)) if isinstance(value, bool) and column and column.check is SWITCH else str(value)
-    if not text or text in ("=", "*") or any(c.isspace() or c == "#" for c in text):
-        raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be without blanks and #")
+    if text in ("", "=", "*") or not table.quoted(text):
+        raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be a number or a word")
     return text
