@@ -5,6 +5,10 @@ from yade_scripts import collide, compress      # runs from Python: runner/sweep
 
 def __getattr__(name):
     if name in ("collide", "compress"):
+        from analysis.startup import missing_libraries
+
+        if problem := missing_libraries():
+            raise ImportError(problem)
         from yade_scripts.runner import sweep
 
         return getattr(sweep, name)

@@ -30,7 +30,7 @@ from yade_scripts.packings.aggregate import MADE, AggregateParameters, make
 from yade_scripts.packings.from_run import CutParameters, cut, holds, read_periodic_state
 from yade_scripts.packings.imported import ImportParameters, grains_of, imported
 from yade_scripts.packings.packing import description
-from yade_scripts.parameters import ParameterError, one_line_errors, one_of, parameter
+from yade_scripts.parameters import ParameterError, one_line_errors, one_of, parameter, show
 from yade_scripts.run.parameters import from_arguments
 
 
@@ -69,7 +69,7 @@ def main(arguments):
         print(f"make_packing.py {version_text()}")
         return 0
     if "--help" in options:
-        print(
+        show(
             f"{__doc__}\n{MadeParameters.help_text()}\n\nWith from=FILE of another program:\n"
             f"{ImportParameters.help_text()}\n\nWith from=RUN/states/NNNNNN.npz of a compression:\n"
             f"{CutParameters.help_text()}"

@@ -47,6 +47,14 @@ def tell(text, script=None):
         print(printable(f"{script or os.path.basename(sys.argv[0])}: {text}"), file=sys.stderr, flush=True)
 
 
+def show(text):
+    """Print a text, as far as the reader (head, less) wants it."""
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:  # what is left in the buffer would fail again at exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 class ParameterError(InputError, ValueError):
     """A wrong parameter; the message is one line: what, where, what it must be."""
 

@@ -34,7 +34,7 @@ require_libraries()
 from analysis.printable import printable, shell_line
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from analysis.version import version_text
-from yade_scripts.parameters import one_line_errors, tell
+from yade_scripts.parameters import one_line_errors, show, tell
 from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
@@ -129,10 +129,7 @@ def main(arguments):
         study = Study(table, options.jobs or CORES)
         if options.status:
             states, _ = study.states_with_queue()
-            try:
-                print(study.table(states) + study.undecided(states), flush=True)
-            except BrokenPipeError:  # of --status | head
-                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            show(study.table(states) + study.undecided(states))
             return 0
         if not options.dry_run:
             study.folder.lock()

@@ -3,6 +3,8 @@ from."""
 
 import hashlib
 import os
+import sys
+from ctypes import CDLL
 from dataclasses import dataclass
 
 from analysis.runs.format import value_text
@@ -10,7 +12,8 @@ from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Par
 from yade_scripts.run import table
 from yade_scripts.time_step import AUTO, STABLE_STEP
 
-CORES = len(os.sched_getaffinity(0))
+# In YADE libgomp counts them: with OMP_PROC_BIND it has bound this process to the first.
+CORES = CDLL("libgomp.so.1").omp_get_num_procs() if "yade" in sys.modules else len(os.sched_getaffinity(0))
 TOLERANCE = 1e-4  # with stepFraction=auto
 STEP = Check(
     f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}", lambda x: 0 < x <= STABLE_STEP
@@ -83,7 +86,9 @@ class RunParameters(Parameters):
         """The same with the number of threads; of_yade: those that YADE was started with."""
         threads = self.threads or (min(of_yade, CORES) if self.engine == "fused" else of_yade)
         if self.engine == "fused" and threads > CORES:
-            raise ParameterError(f"threads = {threads}: more than this machine has cores; must be 1 to {CORES}")
+            raise ParameterError(
+                f"threads = {threads}: more than there are cores for this process; must be 1 to {CORES}"
+            )
         if self.engine != "fused" and threads != of_yade:
             must = "must be the same (yade -jN, or the column !OMP_NUM_THREADS of a table)"
             raise ParameterError(f"threads = {threads}: YADE was started with {of_yade}; {must}")

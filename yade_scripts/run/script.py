@@ -14,7 +14,7 @@ from analysis.progress import tqdm
 from analysis.runs.files import RunFolderError
 from analysis.runs.folder import settings
 from analysis.version import version_text
-from yade_scripts.parameters import InputError, ParameterError, one_line, one_line_errors, tell
+from yade_scripts.parameters import InputError, ParameterError, one_line, one_line_errors, show, tell
 from yade_scripts.run import checkpoint
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import Schedule
@@ -29,7 +29,7 @@ def main(kind, description):
     begun = time.monotonic()
     script = os.path.basename(sys.argv[0])
     if "--help" in sys.argv[1:]:
-        print(f"{description}\n{kind.parameters.help_text()}")
+        show(f"{description}\n{kind.parameters.help_text()}")
         sys.exit(0)
     if "--version" in sys.argv[1:]:
         print(f"{script} {version_text()}")

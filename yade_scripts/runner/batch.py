@@ -96,6 +96,15 @@ class Batch:
         return free[0]
 
 
+def _environment():
+    """This process's, without what is for another Python than YADE's, and what would bind all runs to one core."""
+    left_out = ("VIRTUAL_ENV", "PYTHONHOME", "OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY")
+    kept = {name: value for name, value in os.environ.items() if name not in left_out}
+    folders = kept.pop("PYTHONPATH", "").split(os.pathsep)
+    own = [folder for folder in folders if folder and "site-packages" not in folder]  # Debian's: dist-packages
+    return {**kept, "PYTHONPATH": os.pathsep.join(own), "DISPLAY": ""}
+
+
 class Worker:
     """A process of YADE that runs rows one after another (worker.py), idle until it is given one.
 
@@ -111,7 +120,7 @@ class Worker:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 stdin=subprocess.DEVNULL,
-                env={**os.environ, "DISPLAY": ""},
+                env=_environment(),
                 pass_fds=[theirs.fileno(), *([] if lock is None else [lock])],
                 start_new_session=True,
             )

@@ -84,7 +84,7 @@ def read(path):
 def _row(path, row):
     """StudyRow of a table.Row; raises InputError for a column that is no parameter."""
     name = row.cells.get("!SCRIPT", "yade_scripts/collide.py")
-    script = name if os.path.isfile(name) else os.path.join(TOP, name)  # one's own, or below the top of this suite
+    script = os.path.join(TOP, name) if os.path.isfile(os.path.join(TOP, name)) else name  # of this suite, or one's own
     folder, file = os.path.split(os.path.realpath(script))
     kind = KINDS.get(file) if folder == os.path.realpath(SCRIPTS) else None
     found = StudyRow(file_name(row.description), row.cells, script, kind)
@@ -196,4 +196,7 @@ def failure(log, folder):
     if code > 128:
         return f"killed by signal {code - 128}"
     lines = re.findall(r"^[\w.-]+\.py: (.*)$", text, re.MULTILINE)
-    return f"{folder}: {lines[-1] if lines else 'the script did not come to its end'}"
+    if lines:
+        return f"{folder}: {lines[-1]}"
+    printed = [line.strip() for line in text.splitlines() if line.strip()]
+    return f"{folder}: {printed[-1] if printed else 'did not come to its end'} (all of it in {log})"
