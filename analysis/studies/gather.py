@@ -38,7 +38,7 @@ class Gathered:
 def gather(study, paths):
     """Gathered runs of a study.Study: tables (.csv) are read, then run folders measured.
 
-    Of runs with the same values in key one is counted, since more would make errors too small: a table's row
+    Of runs with the same values in study.key one is counted, since more would make errors too small: a table's row
     before a folder (whose states serve figures), and of folders the longest run. Of runs that must be alike and are
     not none is counted."""
     found, rows, origins = Gathered([], []), {}, []
@@ -53,11 +53,12 @@ def gather(study, paths):
             found.notes.append(f"{file}: {known} runs are in a table before it, which counts")
         rows |= {key: row for key, row in own.items() if key not in rows}
         origins.append(origin)
-    measured = _measure(study, [path for path in paths if Path(path) not in tables], rows, found)
+    measured = _measure(study, [path for path in paths if Path(path) not in tables], found)
     unlike = _unlike(study, [run for run, _ in measured]) if study.alike else None
     if unlike:
         found.problems.append(unlike)
         return found
+    measured = _once(study, measured, rows, found)
     if measured:
         origins.append(provenance([run for run, _ in measured]))
     parts = [pandas.DataFrame(rows.values()), make_table((run.path, values) for run, values in measured)]
@@ -85,19 +86,29 @@ def _read(study, file):
     return rows, head["provenance"]
 
 
-def _measure(study, paths, rows, found):
-    """[(RunFolder, {column: value})] of those that are not in a table; rows of a table get their folder."""
-    measured, same = {}, f"the same {', '.join(study.key)} as"
+def _measure(study, paths, found):
+    """[(RunFolder, {column: value})] of those that have ended and are the study's."""
+    measured = []
     for path, problem in progress(run_folders(paths), "reading runs"):
         try:
-            run = _open(study, path, problem)
-            values = study.measure(run)
+            if problem:
+                raise RunFolderError(problem)
+            if not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
+                raise NotMeasured(f"{path}: has not ended")
+            run = open_run(path)
+            study.require(run)
+            measured.append((run, study.measure(run)))
         except NotMeasured as error:
             found.notes.append(f"{error}, left out")
-            continue
         except RunFolderError as error:
             found.problems.append(str(error))
-            continue
+    return measured
+
+
+def _once(study, runs, rows, found):
+    """Of _measure() those that are not in a table, the longest of each key; rows of a table get their folder."""
+    measured, same = {}, f"the same {', '.join(study.key)} as"
+    for run, values in runs:
         key = _key(study, values)
         if key in rows:
             rows[key][FOLDER] = rows[key][FOLDER] or str(run.path)
@@ -109,16 +120,6 @@ def _measure(study, paths, rows, found):
         else:
             measured[key] = run, values
     return list(measured.values())
-
-
-def _open(study, path, problem):
-    if problem:
-        raise RunFolderError(problem)
-    if not (path / ENDED_FILE).is_file():  # a run that is under way has perhaps no history yet
-        raise NotMeasured(f"{path}: has not ended")
-    run = open_run(path)
-    study.require(run)
-    return run
 
 
 def _key(study, values):
