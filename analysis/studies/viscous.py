@@ -6,13 +6,7 @@ from math import inf, log10
 import numpy as np
 
 from ..figures.style import PAPER
-from ..measures.fragments import (
-    cumulative_cross_section,
-    cumulative_grains,
-    fragment_labels,
-    fragment_sizes,
-    growth_efficiency,
-)
+from ..measures import fragments
 from ..measures.motion import NEAR, pair_velocities, root_mean_square
 from ..runs.ledger import WAYS, initial_kinetic_energy
 from ..runs.measured import derived_constants
@@ -73,10 +67,10 @@ def _fragments(run, row):
         raise NotMeasured(
             f"{run.path}: lasts {time:.3g} s, too short for final fragments: must be {least:.3g} s or more"
         )
-    sizes = fragment_sizes(fragment_labels(len(run.last.radius), run.last.contact_pairs))
+    sizes = fragments.fragment_sizes(fragments.fragment_labels(len(run.last.radius), run.last.contact_pairs))
     grains, number = np.unique(sizes, return_counts=True)
     text = " ".join(f"{n}x{size}" for size, n in zip(grains[::-1], number[::-1]))
-    return int(sizes.max()), growth_efficiency(int(sizes.max()), row["grains"], row["grains"]), text
+    return int(sizes.max()), fragments.growth_efficiency(int(sizes.max()), row["grains"], row["grains"]), text
 
 
 def _neighbours(run, row):
@@ -193,14 +187,14 @@ def by_size(runs, cumulative):
 
 def fragment_exponent(runs, least):
     """alpha of f(N) ~ N^-alpha from N_cum ~ N^(2 - alpha) (A22 eq 41), N from `least` to the grains of an aggregate."""
-    numbers, grains = by_size(runs, cumulative_grains)
+    numbers, grains = by_size(runs, fragments.cumulative_grains)
     inside = (numbers >= least) & (numbers <= runs.grains.max())
     return 2 - exponent(numbers[inside], grains[inside])
 
 
 def large_share(runs):
     """Part of the cross-section in fragments of more than 5 % of all grains."""
-    numbers, section = by_size(runs, cumulative_cross_section)
+    numbers, section = by_size(runs, fragments.cumulative_cross_section)
     return 1 - section[numbers <= 0.1 * runs.grains.max()][-1:].sum() / section[-1]
 
 
