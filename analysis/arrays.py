@@ -52,7 +52,7 @@ def pairs(name, value, grains=None):
 
 def _plain(name, value):
     """The value as an array of real numbers, without gaps that numpy would fill in silence."""
-    if np.ma.is_masked(value):
+    if np.ma.is_masked(value) or (isinstance(value, (list, tuple)) and any(map(np.ma.is_masked, value))):
         raise ValueError(f"{name}: must have no masked values")
     try:
         array = np.asarray(value)

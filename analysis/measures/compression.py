@@ -45,6 +45,7 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
     """
     x = numbers("x", x, (None,), gaps=True)
     x_velocity = numbers("x_velocity", x_velocity, x.shape, gaps=True)
+    aggregate_radius = numbers("aggregate_radius", aggregate_radius, (), positive=True)
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")

@@ -5,6 +5,7 @@ A history is a mapping of arrays (T,) by name: `time` [s] and every channel of r
 
 import numpy as np
 
+from ..arrays import numbers
 from ..measures.periodic_cell import work_on_boundaries
 from .format import CHANNELS, STORED_CHANNELS
 
@@ -25,7 +26,7 @@ def total_energy(history):
     >>> total_energy({**dict.fromkeys(CHANNELS, np.zeros(2)), **energies}).tolist()
     [4.0, 3.0]
     """
-    return np.sum([history[name] for name in CHANNELS], axis=0)
+    return np.sum([numbers(name, history[name], (None,)) for name in CHANNELS], axis=0)
 
 
 def initial_kinetic_energy(history):

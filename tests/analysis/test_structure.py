@@ -82,7 +82,7 @@ def test_filling_of_the_zone_that_is_hit_is_one_in_the_mean_and_zero_with_a_hole
 
 def test_arrays_of_numbers_and_pairs_are_converted_or_refused_by_name():
     wrong = [None, "x", True, 1j, [None], [[1], [2, 3]], {}, pandas.NA, [1.0, np.nan], [np.inf, 1], [-1.0]]
-    for value in (*wrong, np.zeros((2, 2)), np.ma.masked_array([1.0, 2.0], [0, 1])):
+    for value in (*wrong, np.zeros((2, 2)), np.ma.masked_array([1.0, 2.0], [0, 1]), [1.0, np.ma.masked]):
         with pytest.raises(ValueError, match="^radius: [^\n]*$"):
             numbers("radius", value, (None,), positive=True)
     assert numbers("x", [1, 2], (2,)).dtype == float and numbers("n", [1.0, 2.0], whole=True).dtype == np.intp

@@ -4,6 +4,8 @@ it."""
 import re
 from pathlib import Path
 
+import numpy as np
+import pandas
 import pytest
 from running import PYTHON, TOP, call, collide, refusal
 
@@ -43,6 +45,10 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
     with pytest.raises(ParameterError) as wrong:
         from_python(velocity=[3, -1], grains=[16, 32])
     assert refusal(collide(tmp_path, "velocity=-1")) == f"collide.py: {wrong.value}"
+    nullable = pandas.array([3, None], dtype="Float64")
+    for missing in ([3, None], np.ma.masked_array([3.0, 4.0], [0, 1]), np.ma.masked, pandas.NA, nullable):
+        with pytest.raises(ParameterError, match="^velocity"):
+            from_python(velocity=missing)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -6,6 +6,8 @@ import hashlib
 import os
 from itertools import product
 
+import numpy as np
+
 from analysis.report.rows import table as table_of_runs
 from analysis.runs.status import DONE
 from yade_scripts.experiments import collision, compression
@@ -35,7 +37,8 @@ def collide(folder="runs", jobs=None, **parameters):
     jobs : int, optional
         Threads at once (one for each core).
     **parameters
-        As `collide.py --help` lists them; a list, range or array stands for several values, None for the default.
+        As `collide.py --help` lists them; a list, range or array stands for several values, None, alone, for the
+        default.
 
     Returns
     -------
@@ -101,10 +104,14 @@ def _rows(kind, script, parameters, folder):
 
 def _listed(name, value):
     """The values of a parameter as a list of Python's own."""
+    missing = np.ma.is_masked(value)
     value = value.tolist() if hasattr(value, "tolist") else value
-    values = list(value) if isinstance(value, (list, tuple, range, set)) else [value]
+    several = isinstance(value, (list, tuple, range, set))
+    values = list(value) if several else [value]
     if not values:
         raise ParameterError(f"{name}: has no value; must be one or several")
+    if missing or (several and any(each is None or np.ma.is_masked(each) for each in values)):
+        raise ParameterError(f"{name}: has a missing value; must be given, or None alone for the default")
     return values
 
 
@@ -112,5 +119,6 @@ def _text(name, value, column=None):
     """A value as the cell of a table; True and False stand for 1 and 0 where the parameter's column is a switch."""
     text = str(int(value)) if isinstance(value, bool) and column and column.check is SWITCH else str(value)
     if text in ("", "=", "*") or not table.quoted(text):
-        raise ParameterError(f"{name} = {text}: holds what the cell of a table can't; must be a number or a word")
+        found = " ".join(text.split())
+        raise ParameterError(f"{name} = {found}: holds what the cell of a table can't; must be a number or a word")
     return text
