@@ -7,7 +7,6 @@ from ..figures.grain_colours import COLOURINGS
 from ..printable import printable
 from . import FAILED, RUNS, add_command, complain, number, with_ending
 
-TRUTHS = {"True": True, "False": False}
 FORMATS = "vtk", "xyz"
 
 
@@ -95,8 +94,8 @@ def _condition(text):
     name, equals, value = text.partition("=")
     if not equals:
         raise argparse.ArgumentTypeError(f"{text}: must be COLUMN=VALUE")
-    if value in TRUTHS:
-        return name, TRUTHS[value]
+    if value in ("True", "False"):
+        return name, value == "True"
     try:
         return name, float(value)
     except ValueError:

@@ -18,7 +18,6 @@ from .format import (
     ENDED_FILE,
     HISTORY_FILE,
     PARAMETER_UNITS,
-    POSITIVE_CONSTANTS,
     READABLE,
     RUN_FILE,
     RUN_KINDS,
@@ -249,10 +248,6 @@ def _require_record(file, record):
     for key in ("parameters", "derived"):
         if not isinstance(record.get(key), dict):
             raise RunFolderError(f"{file}: '{key}' is missing or not an object")
-    for key in POSITIVE_CONSTANTS:
-        value = record["derived"].get(key)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
-            raise RunFolderError(f"{file}: derived '{key}' must be a positive number, it is {value!r}")
 
 
 def _kind_of_its_own(name, history):

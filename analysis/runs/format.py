@@ -177,9 +177,6 @@ COMPRESSION = RunKind(
 # and its series as they are.
 RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 
-# Derived constants of run.json that every analysis may divide by.
-POSITIVE_CONSTANTS = ("grainRadius", "pullOffForce")
-
 # Parameters in run.json that are words. A test compares the list with the scripts' own, as below.
 PARAMETER_WORDS = tuple("packing file projectileFile sizes target boundary stretch material engine limit".split())
 

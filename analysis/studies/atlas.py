@@ -117,8 +117,7 @@ def rows(runs):
     dense = (slow_known.structure == "compressed") & (slow_known.filling > 0.35)
     lost = average(slow_known.lost_in_compression[central & dense])
     what = "dissipated until the largest compression, slow, compressed of filling 0.35 to 0.5, b < 0.7, equal"
-    note = "of K(0) and what adhesion has released, a measure chosen after the first runs"
-    yield Row(what, lost, None, "nearly 90 %", "Oshiro 2025", note=note)
+    yield Row(what, lost, None, "nearly 90 %, of another measure", "Oshiro 2025")
     yield from _outcomes(slowly, known)
     yield from _predictions(runs)
 

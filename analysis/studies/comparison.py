@@ -39,8 +39,6 @@ class Row:
         How the paper prints it ('' for a number that is ours alone), and its section or equation.
     runs : int, optional
         Independent runs behind the paper's number, which are taken to scatter as ours do.
-    note : str
-        Why the two are not quite the same thing.
     """
 
     quantity: str
@@ -49,7 +47,6 @@ class Row:
     printed: str = ""
     source: str = ""
     runs: int | None = None
-    note: str = ""
 
     @property
     def limits(self):
@@ -110,7 +107,6 @@ def of_table(rows):
             "text": str(row.ours),
             "difference": row.difference,
             "word": row.word,
-            "note": row.note,
         }
         for row in rows
     ]
