@@ -1,14 +1,19 @@
-"""The materials of the papers, and the grains of a run: SI units, with sources."""
+"""The materials of the papers and of one's own, and the grains of a run: SI units, with sources."""
 
+import tomllib
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
+import numpy as np
+
 from analysis import theory
+from analysis.printable import suggested
 from analysis.theory.pair_constants import GRAIN_RADII
 from yade_scripts.parameters import (
     NOT_NEGATIVE,
     POSITIVE,
     SWITCH,
+    Check,
     ParameterError,
     Parameters,
     Usual,
@@ -46,6 +51,8 @@ DENSITY = Usual(100, 23_000, "aerogel to osmium")
 SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
 ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
+MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
+PROPERTIES = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
 
 
 @dataclass(frozen=True)
@@ -53,7 +60,21 @@ class GrainParameters(Parameters):
     """The grains. Each property is that of `material` unless it is given."""
 
     material: str = parameter(
-        "ice", one_of(list(MATERIALS)), f"whose properties the grains have, each unless it is given below ({VALUES})"
+        "ice",
+        Check("a material, or two with a comma between", lambda text: 1 <= len(text.split(",")) <= 2),
+        f"whose properties the grains have, each unless it is given below ({VALUES}); ice,silicate: of either",
+    )
+    materials: str | None = parameter(
+        None,
+        Check("a file with a section [NAME] a material", lambda text: text != ""),
+        f"file (TOML) of materials of one's own, each with {', '.join(PROPERTIES)}, perhaps grainRadius",
+    )
+    materialFraction: float | None = parameter(None, between(0, 1), "of the grains, those of the second material", "1")
+    layout: str | None = parameter(
+        None,
+        one_of(LAYOUTS),
+        f"of two materials: {MIXED} at random (if left out), the second one outside, at the larger x, or the whole "
+        "projectile of it",
     )
     grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m", usual=GRAINS)
     young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
@@ -65,30 +86,97 @@ class GrainParameters(Parameters):
     unusual: int = parameter(0, SWITCH, "1: values outside of their usual ranges are meant", of_consequence=False)
 
     def filled_in(self):
-        """The material's properties where none are given."""
-        of_material = asdict(MATERIALS[self.material])
-        grains = self.changed(**{name: value for name, value in of_material.items() if getattr(self, name) is None})
-        if grains.viscoelasticTime and not grains.poisson:
+        """The material's properties where none are given; of two, those of the first one."""
+        known = known_materials(self.materials)
+        for name in self.material_names:
+            if name not in known:
+                raise ParameterError(f"material = {name}: no such material{suggested(name, known)}")
+        of_first = asdict(known[self.material_names[0]])
+        if len(self.material_names) == 1:
+            self._require_left_out("with one material", ("materialFraction", "layout"))
+            found = self
+        else:
+            self._require_left_out("with two materials, whose own it is", PROPERTIES)
+            found = self.changed(layout=self.layout or MIXED)
+            if found.layout != PAIR and found.materialFraction is None:
+                raise ParameterError("materialFraction: not given with two materials; must be 0 to 1")
+            if found.layout == PAIR:
+                self._require_left_out(f"with layout = {PAIR}", ("materialFraction",))
+        grains = found.changed(**{name: value for name, value in of_first.items() if getattr(found, name) is None})
+        if grains.grainRadius is None:
+            raise ParameterError(f"grainRadius: neither given nor in {self.materials}; must be > 0 [m]")
+        if grains.viscoelasticTime and not all(grains.poisson for grains in grains.of_each()):
             raise ParameterError("poisson = 0: with viscous drag must be > 0 (A22 eq 7 divides by its square)")
         return super(GrainParameters, grains).filled_in()
 
+    def _require_left_out(self, given, names):
+        for name in names:
+            if (value := getattr(self, name)) is not None:
+                value = value if isinstance(value, str) else f"{value:g}"
+                raise ParameterError(f"{name} = {value}: given {given}; must be left out")
 
-def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0):
+    @property
+    def material_names(self):
+        """Names of the materials, one or two."""
+        return [name.strip() for name in self.material.split(",")]
+
+    def of_each(self):
+        """The same parameters for grains of each material alone, in a list; of one material these."""
+        known, each = known_materials(self.materials), [self.changed(material=self.material_names[0])]
+        for name in self.material_names[1:]:
+            each.append(self.changed(material=name, **{key: getattr(known[name], key) for key in PROPERTIES}))
+        return each
+
+
+def known_materials(file=None):
+    """{name: Material} of the papers, and of one's own in a TOML file, a section a material. Raises ParameterError."""
+    return {**MATERIALS, **(_materials_in(file) if file else {})}
+
+
+def _materials_in(file):
+    try:
+        with open(file, "rb") as opened:
+            sections = tomllib.load(opened)
+    except (OSError, ValueError) as error:
+        must = "must be TOML, a section [NAME] a material"
+        raise ParameterError(f"materials = {file}: {' '.join(str(error).split())}; {must}") from None
+    found, columns = {}, GrainParameters.columns()
+    for name, own in sections.items():
+        where, missing = f"{file}: [{name}]", set(PROPERTIES) - set(own if isinstance(own, dict) else ())
+        if missing:
+            raise ParameterError(f"{where}: no {min(missing)}; must have {', '.join(PROPERTIES)}")
+        if unknown := set(own) - {*PROPERTIES, "grainRadius"}:
+            raise ParameterError(f"{where}: {min(unknown)}: no property{suggested(min(unknown), PROPERTIES)}")
+        try:
+            values = {key: columns[key].value(value) for key, value in own.items()}
+            for key in values:
+                columns[key].require_usual(values[key])
+        except ParameterError as problem:
+            raise ParameterError(f"{where}: {problem}") from None
+        found[name] = Material(**{"grainRadius": None, **values})
+    return found
+
+
+def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0, other=None):
     """Constants of a contact of two grains, where no YADE runs. A run takes them from the plugin; a test compares.
 
-    grains: with the attributes of Material, perhaps viscoelasticTime [s] and slidingStiffnessFactor; radii: of the two
-    [m], both grainRadius if left out; neck: beta of sintered grains; linearDamping: k_n. Returns {name: value} by the
-    plugin's names, SI; with a neck those of a bond, of two grains of grainRadius, as "bond".
+    grains: with the attributes of Material, perhaps viscoelasticTime [s] and slidingStiffnessFactor; other: likewise,
+    of the second grain where it is of another material; radii: of the two [m], both grainRadius if left out; neck: beta
+    of sintered grains; linearDamping: k_n. Returns {name: value} by the plugin's names, SI; with a neck those of a
+    bond, of two grains of grainRadius, as "bond".
     """
-    names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
-    properties = [float(getattr(grains, name)) for name in names]
-    material = theory.Material(*properties, getattr(grains, "viscoelasticTime", 0.0))
+    both = [_material_of(of) for of in (grains, other or grains)]
     first, second = radii or (grains.grainRadius, grains.grainRadius)
     sliding = getattr(grains, "slidingStiffnessFactor", 1.0)
-    found = _by_plugins_names(_pair_constants(material, first, material, second, linearDamping, sliding))
+    found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, sliding))
     if neck:
-        found["bond"] = _by_plugins_names(_bond_constants(material, grains.grainRadius, neck))
+        found["bond"] = _by_plugins_names(_bond_constants(both[0], grains.grainRadius, neck))
     return found
+
+
+def _material_of(grains):
+    properties = [float(getattr(grains, name)) for name in PROPERTIES]
+    return theory.Material(*properties, getattr(grains, "viscoelasticTime", 0.0))
 
 
 def _by_plugins_names(constants):
@@ -100,6 +188,28 @@ def _by_plugins_names(constants):
 def equilibrium_overlap(grains):
     """Overlap [m] at which the JKR force between two of these grains vanishes (A22 after eq 2)."""
     return pair_constants(grains)["equilibriumOverlap"]
+
+
+def of_pairs(each, of):
+    """Matrix (K, K) of a function of pair_constants(), of two grains of grainRadius of every pair of K materials
+    (objects with the attributes of Material)."""
+    return np.array([[of(pair_constants(one, other=other)) for other in each] for one in each])
+
+
+def overlaps(each):
+    """The same of the overlap at rest [m]."""
+    return of_pairs(each, lambda pair: pair["equilibriumOverlap"])
+
+
+def derived_materials(grains):
+    """What run.json has of several materials: their properties, and F_c delta_c [J] of each pair of two grains of
+    grainRadius; {} of one."""
+    each = grains.of_each()
+    if len(each) == 1:
+        return {}
+    energy = lambda pair: pair["pullOffForce"] * pair["pullOffOverlap"]
+    materials = [{"name": own.material, **{name: getattr(own, name) for name in PROPERTIES}} for own in each]
+    return {"materials": materials, "pullOffEnergies": of_pairs(each, energy).tolist()}
 
 
 def require_small_contacts(constants):

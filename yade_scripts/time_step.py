@@ -5,7 +5,9 @@ grains, as the plugin's pairConstants or materials.pair_constants give them, wit
 where grains are sintered."""
 
 import math
+from functools import partial
 
+from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
@@ -75,6 +77,20 @@ def step_limit(constants, filling):
     return min(STABLE_STEP, SAFETY * min(steps) / constants["timeUnit"])
 
 
+def limit_of_unlike(grains, constants, filling, radii=None):
+    """step_limit() of grains of unlike materials, or of sizes between radii (smallest, largest) [m].
+
+    The fastest vibration is that of the lightest grains among those to which their contacts are stiffest, the largest.
+    grains: materials.GrainParameters; constants: of two grains, whose time unit is the run's."""
+    smallest, largest = radii or 2 * (grains.grainRadius,)
+    of, each = partial(pair_constants, linearDamping=getattr(grains, "linearDamping", 0.0)), grains.of_each()
+    limits = []
+    for one in each:
+        own = {"reducedMass": of(one, (smallest, smallest))["reducedMass"], "timeUnit": constants["timeUnit"]}
+        limits += [step_limit({**of(one, (smallest, largest), other=other), **own}, filling) for other in each]
+    return min(limits)
+
+
 def bond_step(constants):
     """Step [t0] at which a grain vibrates unstably against eight bonded neighbours."""
     bond, mass = constants["bond"], 2 * constants["reducedMass"]
@@ -119,9 +135,13 @@ def longest_step(error, tolerance, limit):
     return min(limit, float(f"{math.floor(round(step / unit, 9)) * unit:.2g}"))
 
 
-def _require_measured(*unmeasured):
+def _require_measured(parameters, *unmeasured):
     """Raise ParameterError for a run that was not measured; (whether it is such a run, what that is), ..."""
-    for wrong, what in unmeasured:
+    several = (
+        (len(parameters.material_names) > 1, "two materials"),
+        (not parameters.has_all_springs, "springs left out"),
+    )
+    for wrong, what in (*several, *unmeasured):
         if wrong:
             raise ParameterError(f"stepFraction = {AUTO}: not measured with {what}; must be a number [t0] here")
 
@@ -130,6 +150,7 @@ def collision_error(parameters, constants):
     """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level. Raises ParameterError."""
     sliding, velocity = parameters.slidingStiffnessFactor, parameters.velocity
     _require_measured(
+        parameters,
         (parameters.packing == "file", "packing = file"),
         (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
         (parameters.sizes != EQUAL, f"sizes = {parameters.sizes}"),
@@ -177,6 +198,7 @@ def compression_error(parameters, constants):
     final, sliding = parameters.finalFilling, parameters.slidingStiffnessFactor
     range_of_rolling = f"only {ROLLINGS[0]:g} to {ROLLINGS[1]:g} (not ice, or another criticalRolling)"
     _require_measured(
+        parameters,
         (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
         (parameters.finalPressure is not None, "finalPressure, which may end a run at any filling"),
         (not FILLINGS[0] <= final <= FILLINGS[1], f"finalFilling = {final:.3g}, only {FILLINGS[0]} to {FILLINGS[1]}"),

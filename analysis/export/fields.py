@@ -72,13 +72,20 @@ class Exported:
 
     def mass(self):
         """(N,) [kg]."""
+        if self.state.mass is not None:
+            return self.state.mass
         return 4.0 / 3.0 * np.pi * self.density * self.state.radius**3
+
+    def material(self):
+        """(N,) int."""
+        return np.zeros(len(self.state.radius), dtype=int) if self.state.material is None else self.state.material
 
 
 GRAINS = (
     Field("id", "", "row of the grain in the states of the run", lambda e: np.arange(len(e.state.radius))),
     Field("radius", "m", "radius", lambda e: e.state.radius),
-    Field("mass", "kg", "mass, of the run's density", lambda e: e.mass()),
+    Field("mass", "kg", "mass", lambda e: e.mass()),
+    Field("material", "", "number of the material, from 0", lambda e: e.material()),
     Field("v", "m/s", "velocity", lambda e: e.state.velocity),
     Field("omega", "rad/s", "angular velocity", lambda e: e.state.angular_velocity),
     Field("aggregate", "", "aggregate at the start", lambda e: e.state.aggregate.astype(int)),
@@ -96,8 +103,10 @@ CONTACTS = (
 
 
 def grain_fields(exported):
-    """{name: array} of the grains, without `mass` if the run has no density."""
-    return {f.name: f.values(exported) for f in GRAINS if f.name != "mass" or exported.density is not None}
+    """{name: array} of the grains, without `mass` if the run has no density, and `material` if it has one."""
+    missing = {"mass"} if exported.density is None else set()
+    missing |= {"material"} if exported.state.material is None else set()
+    return {field.name: field.values(exported) for field in GRAINS if field.name not in missing}
 
 
 def exported_states(run):

@@ -6,6 +6,7 @@ from typing import Callable
 
 import numpy as np
 
+from ..measures.fragments import grain_masses
 from ..progress import progress
 
 
@@ -38,6 +39,7 @@ class Range:
     def __init__(self, run):
         self._states = run.states
         self.aggregates = int(run.start.aggregate.max()) + 1  # their number
+        self.materials = str(run.parameters.get("material", "")).split(",")  # their names
 
     @cached_property
     def fastest(self):
@@ -47,7 +49,7 @@ class Range:
 
 
 def _speed(state):
-    of_centre = np.average(state.velocity, axis=0, weights=state.radius**3)
+    of_centre = np.average(state.velocity, axis=0, weights=grain_masses(vars(state)))
     return np.linalg.norm(state.velocity - of_centre, axis=1)
 
 
@@ -80,6 +82,11 @@ COLOURINGS = {
         "aggregate",
         lambda e, of: _of_table(AGGREGATE_COLOURS, e.state.aggregate),
         lambda of: _patches(AGGREGATE_COLOURS[: of.aggregates], ("aggregate 1", "aggregate 2")),
+    ),
+    "material": Colouring(
+        "material",
+        lambda e, of: _of_table(AGGREGATE_COLOURS, e.material()),
+        lambda of: _patches(AGGREGATE_COLOURS, of.materials),
     ),
     "contacts": Colouring(
         "contacts of the grain",

@@ -37,14 +37,17 @@ def rebound_time(radius, time_unit):
 def contact_strength(state, constants):
     """Energy [J] (M,) that breaks each contact from rest; arguments as why_undecided.
 
-    Of JKR contacts E_break, which grows as the reduced radius to the power 4/3, of sintered bonds what breaks them by
-    stretching (S17 eq 6).
+    Of JKR contacts E_break, which grows as the reduced radius to the power 4/3 and depends on the two materials, of
+    sintered bonds what breaks them by stretching (S17 eq 6).
     """
     first, second = state["radius"][state["contact_pairs"]].T
     reduced = 2 * first * second / (first + second) / constants["grainRadius"]
     # grains that sintered are smaller spheres
     reduced *= constants.get("shrunkRadius", constants["grainRadius"]) / constants["grainRadius"]
-    found = BREAKING * constants["pullOffForce"] * constants["pullOffOverlap"] * reduced ** (4 / 3)
+    of_pair = constants["pullOffForce"] * constants["pullOffOverlap"]
+    if state.get("material") is not None:
+        of_pair = np.asarray(constants["pullOffEnergies"])[tuple(state["material"][state["contact_pairs"]].T)]
+    found = BREAKING * of_pair * reduced ** (4 / 3)
     return np.where(state["contact_bonded"], constants.get("breakingEnergy", 0.0), found)
 
 
@@ -93,7 +96,8 @@ class Pieces:
 
     def __init__(self, state, constants):
         self.state, self.constants = state, constants
-        self.mass = 4 / 3 * np.pi * constants["density"] * state["radius"] ** 3
+        several = state.get("mass") is not None
+        self.mass = state["mass"] if several else 4 / 3 * np.pi * constants["density"] * state["radius"] ** 3
         self._motion = state["position"], state["velocity"], self.mass
 
     @cached_property  # not needed as long as the aggregates may rebound
@@ -103,7 +107,7 @@ class Pieces:
     @property
     def flight(self):
         """Arguments of motion.pieces_can_meet."""
-        return self.state["position"], self.state["velocity"], self.state["radius"], self.labels
+        return self.state["position"], self.state["velocity"], self.state["radius"], self.mass, self.labels
 
     def why_rebounding(self, since_touch):
         radius = self.constants["aggregateRadius"] / self.constants["grainRadius"]
@@ -112,7 +116,10 @@ class Pieces:
             return f"{since_touch:.3g} s after the first touch the aggregates may still rebound, until {needed:.3g} s"
 
     def are_moving_within(self):
-        breaking = BREAKING * self.constants["pullOffForce"] * self.constants["pullOffOverlap"]
+        weakest = self.constants.get(
+            "pullOffEnergies", self.constants["pullOffForce"] * self.constants["pullOffOverlap"]
+        )
+        breaking = BREAKING * np.min(weakest)
         inner = inner_kinetic_energy(*self._motion, self.labels)
         return bool(np.any(inner > QUIET * breaking * np.bincount(self.labels)))
 

@@ -33,6 +33,13 @@ def fragment_sizes(labels):
     return np.bincount(numbers("labels", labels, (None,), least=0, whole=True))
 
 
+def grain_masses(state):
+    """Masses (N,) of the grains of a state (a mapping): `mass` [kg] where grains are of several materials, else
+    radius^3 [m^3]."""
+    mass = state.get("mass")
+    return state["radius"] ** 3 if mass is None else mass
+
+
 def fragment_masses(labels, mass):
     """Mass (K,) of each fragment, of labels (N,) and the grains' mass (N,), in any unit.
 

@@ -7,13 +7,14 @@ _CHUNK = 4_000_000  # pairs of pieces compared at once
 NEAR = 2.2  # A22's threshold distance of neighbours, in grain radii
 
 
-def pieces_can_meet(position, velocity, radius, labels, time):
+def pieces_can_meet(position, velocity, radius, mass, labels, time):
     """Whether two pieces may touch within `time` [s] when every piece moves on with the velocity of its centre of
-    mass: whether the spheres around any two of them meet. Grains of one density.
+    mass: whether the spheres around any two of them meet.
 
-    position, velocity (N,3) [m, m/s], radius (N,) [m], labels (N,) as fragments.fragment_labels has them.
+    position, velocity (N,3) [m, m/s], radius (N,) [m], mass (N,) in any unit, labels (N,) as fragments.fragment_labels
+    has them.
     """
-    flight = _flight(position, velocity, radius, labels)
+    flight = _flight(position, velocity, radius, mass, labels)
     number = labels.max() + 1
     rows = max(1, _CHUNK // number)
     for first in range(0, number - 1, rows):
@@ -23,9 +24,9 @@ def pieces_can_meet(position, velocity, radius, labels, time):
     return False
 
 
-def pieces_that_can_meet(piece, position, velocity, radius, labels, time):
+def pieces_that_can_meet(piece, position, velocity, radius, mass, labels, time):
     """Which pieces (K,) bool may touch the piece of this number; arguments as pieces_can_meet."""
-    found = _meet(*_flight(position, velocity, radius, labels), np.array([piece]), time)[0]
+    found = _meet(*_flight(position, velocity, radius, mass, labels), np.array([piece]), time)[0]
     found[piece] = False
     return found
 
@@ -77,9 +78,8 @@ def root_mean_square(values):
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else float("nan")
 
 
-def _flight(position, velocity, radius, labels):
+def _flight(position, velocity, radius, mass, labels):
     """Centres, velocities (K,3) and radii of the spheres (K,) around all pieces."""
-    mass = radius**3
     centre, motion = means_of_pieces(position, labels, mass), means_of_pieces(velocity, labels, mass)
     reach = np.zeros(len(centre))
     np.maximum.at(reach, labels, np.linalg.norm(position - centre[labels], axis=1) + radius)

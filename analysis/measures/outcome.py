@@ -99,17 +99,16 @@ def mean_velocity(velocity, mass, members):
     return np.average(velocity[members], axis=0, weights=mass[members])
 
 
-def collision_outcome(radius, aggregate, start_velocity, start_pairs, end_velocity, end_pairs, met=True):
-    """Outcome from grains of one density: radius (N,) [m], aggregate (N,) 0 or 1, velocities (N,3) [m/s] and contact
-    pairs (M,2) (rows of the grains) at the start and at the end; met: whether the aggregates touched at any time.
+def collision_outcome(mass, aggregate, start_velocity, start_pairs, end_velocity, end_pairs, met=True):
+    """Outcome from grains: mass (N,) in any unit, aggregate (N,) 0 or 1, velocities (N,3) [m/s] and contact pairs (M,2)
+    (rows of the grains) at the start and at the end; met: whether the aggregates touched at any time.
 
     ValueError if one aggregate has no grain."""
-    radius, aggregate = np.asarray(radius, dtype=float), np.asarray(aggregate)
+    mass, aggregate = np.asarray(mass, dtype=float), np.asarray(aggregate)
     numbers = np.bincount(aggregate, minlength=2)
     if not numbers.all():
         raise ValueError(f"an outcome needs two aggregates, aggregate {int(np.argmin(numbers))} has no grain")
-    # In units of the largest grain, so that equal grains add up without rounding.
-    mass = (radius / radius.max()) ** 3
+    mass = mass / mass.max()  # so that equal grains add up without rounding
     counted = belongs_to_an_aggregate(aggregate, start_pairs, mass)
     labels = fragment_labels(len(mass), end_pairs)
     fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()

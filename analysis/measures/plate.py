@@ -21,7 +21,14 @@ from itertools import chain
 import numpy as np
 
 from .decided import EVER, Pieces
-from .fragments import belongs_to_an_aggregate, fragment_labels, fragment_masses, fragment_sizes, heaviest_fragment
+from .fragments import (
+    belongs_to_an_aggregate,
+    fragment_labels,
+    fragment_masses,
+    fragment_sizes,
+    grain_masses,
+    heaviest_fragment,
+)
 from .motion import means_of_pieces, pieces_that_can_meet
 from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, ROUNDING, STICKING, Outcome, mean_velocity, restitution
 
@@ -50,8 +57,13 @@ def with_plate(state):
     grains, on_plate = len(state["radius"]), state["plane_contacts"][:, 0]
     to_plate = np.stack([on_plate, np.full(len(on_plate), grains)], axis=1)
     at_rest = np.zeros((1, 3))
+    of_materials = {}
+    if state.get("mass") is not None:  # the plate is of the first material
+        heavy = (size / state["radius"].max()) ** 3 * state["mass"].max()
+        of_materials = {"mass": np.append(state["mass"], heavy), "material": np.append(state["material"], 0)}
     return {
         **state,
+        **of_materials,
         "position": np.concatenate([state["position"], centre[None]]),
         "velocity": np.concatenate([state["velocity"], at_rest]),
         "radius": np.append(state["radius"], size),
@@ -71,17 +83,18 @@ def classify_on_plate(on, off):
 def _counted(start):
     """Mask (N + 1,) of the grains that count; the plate does not."""
     one = np.zeros(len(start["radius"]), dtype=int)
-    return np.append(belongs_to_an_aggregate(one, start["contact_pairs"], start["radius"] ** 3), False)
+    return np.append(belongs_to_an_aggregate(one, start["contact_pairs"], grain_masses(start)), False)
 
 
 def plate_outcome(start, end, met):
-    """outcome.Outcome from the states (mappings) at the start and at the end, of grains of one density; met: whether
-    the aggregate touched the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the
+    """outcome.Outcome from the states (mappings) at the start and at the end; met: whether the aggregate touched
+    the plate at any time. mass_fractions, fragments and largest_fragment: what lies on the
     plate is one piece; growth_efficiency: the plate's, the fraction of the mass of all grains that lies on it;
     mass_on_plate: f_on."""
     counted, state = _counted(start), with_plate(end)
     labels = fragment_labels(len(counted), state["contact_pairs"])
-    mass = (state["radius"] / state["radius"][:-1].max()) ** 3  # so that equal grains add up without rounding
+    mass = grain_masses(state)
+    mass = mass / mass[:-1].max()  # so that equal grains add up without rounding
     fractions = fragment_masses(labels, mass * counted) / mass[counted].sum()
     sizes = fragment_sizes(labels)
     sizes[labels[-1]] -= 1
@@ -124,17 +137,16 @@ def why_undecided_on_plate(kind, start, end, constants, touch, recent=()):
     return next(filter(None, of_all), None)
 
 
-def _that_can_meet_it(plate, position, velocity, radius, labels):
+def _that_can_meet_it(plate, position, velocity, radius, mass, labels):
     """Which pieces (K,) may touch the piece of the plate: those whose spheres do, unless they leave faster than any
     of their grains moves in the piece, so that none comes back however it turns."""
-    mass = radius**3
     centre, motion = means_of_pieces(position, labels, mass), means_of_pieces(velocity, labels, mass)
     within = np.zeros(len(centre))
     np.maximum.at(within, labels, np.linalg.norm(velocity - motion[labels], axis=1))
     away = centre - centre[plate]
     with np.errstate(invalid="ignore"):
         leaving = np.einsum("ij,ij->i", motion, away) / np.linalg.norm(away, axis=1)
-    return pieces_that_can_meet(plate, position, velocity, radius, labels, EVER) & ~(leaving > within)
+    return pieces_that_can_meet(plate, position, velocity, radius, mass, labels, EVER) & ~(leaving > within)
 
 
 def _why_breaking(kind, pieces, counted):

@@ -81,7 +81,7 @@ _BOOKKEEPING = ("out", "overwrite", "resume", "checkpointInterval", "threads", "
 # {parameter: another one from which it follows as a rule}
 _FOLLOWING = {
     **dict.fromkeys(("grainRadius", "young", "poisson", "density", "surfaceEnergy", "criticalRolling"), "material"),
-    **dict.fromkeys(("sizeRatio", "sizeFraction", "sizeSpread"), "sizes"),
+    **dict.fromkeys(("sizeRatio", "sizeFraction", "sizeSpread", "sizeExponent", "smallest", "largest"), "sizes"),
 }
 VALUES = 5  # that are listed, where runs differ
 

@@ -58,7 +58,7 @@ class State(SimpleNamespace):
         """DataFrame with a row for each piece (grains joined by contacts), the largest first (runs.pieces)."""
         from .pieces import fragments  # loads pandas
 
-        return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size)
+        return fragments(self.position, self.radius, self.contact_pairs, self.aggregate, self.cell_size, self.mass)
 
 
 class StateSequence(Sequence):
@@ -150,8 +150,10 @@ class RunFolder:
 
 def settings(parameters):
     """'packing cpe, velocity 10 m/s, ...': the parameters SHOWN of a run's."""
-    given = ((name, parameters.get(name)) for name in SHOWN)
-    return ", ".join(_setting(name, value) for name, value in given if value not in (None, ""))
+    given = {name: parameters.get(name) for name in SHOWN}
+    if "," in str(given["material"]):  # two, each with its own
+        del given["surfaceEnergy"]
+    return ", ".join(_setting(name, value) for name, value in given.items() if value not in (None, ""))
 
 
 def _setting(name, value):

@@ -132,6 +132,8 @@ STATE = (
     Quantity("angular_velocity", ("N", 3), "rad/s", "angular velocities"),
     Quantity("radius", ("N",), "m", "radii, of sintered grains those before they shrank", positive=True),
     Quantity("aggregate", ("N",), "", "number of the aggregate that a grain belongs to at the start", "i"),
+    Quantity("material", ("N",), "", "of several, which of derived `materials` in run.json", "i", optional=True),
+    Quantity("mass", ("N",), "kg", "of grains of several materials", optional=True, positive=True),
     Quantity("contact_pairs", ("M", 2), "", "rows of the two grains of a contact", "i"),
     Quantity("contact_normal_force", ("M",), "N", "normal force, elastic and viscous, positive when repulsive"),
     Quantity("contact_bonded", ("M",), "", "whether a contact is a sintered bond", "b"),
@@ -178,13 +180,15 @@ COMPRESSION = RunKind(
 RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 
 # Parameters in run.json that are words. A test compares the list with the scripts' own, as below.
-PARAMETER_WORDS = tuple("packing file projectileFile sizes target boundary stretch material engine limit".split())
+PARAMETER_WORDS = tuple(
+    "packing file projectileFile sizes sizesFile target boundary stretch material materials layout engine limit".split()
+)
 
 # Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's
 # own are theirs. A test compares the list with the scripts' own.
 _BY_UNIT = {
     "m/s": "velocity",
-    "m": "grainRadius criticalRolling",
+    "m": "grainRadius criticalRolling smallest largest",
     "s": "duration viscoelasticTime checkpointInterval",
     "t0": "stepFraction impactStepFraction",
     "1/t0": "strainRate",
@@ -193,8 +197,8 @@ _BY_UNIT = {
     "J/m^2": "surfaceEnergy",
     "grain radii": "radius",
     "of that at rest": "initialOverlap",
-    "1": "impact neck filling initialFilling finalFilling stretchFilling sizeRatio sizeFraction sizeSpread poisson "
-    "tolerance slidingStiffnessFactor linearDamping",
+    "1": "impact neck filling initialFilling finalFilling stretchFilling sizeRatio sizeFraction sizeSpread "
+    "sizeExponent materialFraction poisson tolerance slidingStiffnessFactor linearDamping",
 }
 PARAMETER_UNITS = {name: unit for unit, names in _BY_UNIT.items() for name in names.split()}
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from ..measures.compression import first_compression
 from ..measures.decided import CONSTANTS, is_recent, why_undecided
-from ..measures.fragments import belongs_to_an_aggregate
+from ..measures.fragments import belongs_to_an_aggregate, grain_masses
 from ..measures.outcome import collision_outcome
 from ..measures.plate import has_plate, plate_outcome, why_undecided_on_plate
 from .files import RunFolderError
@@ -22,7 +22,7 @@ def are_equal(run):
     """Whether the two aggregates of a RunFolder are of equal mass to within UNLIKE, or one hits a plate: d and v have
     a meaning then."""
     start = run.start
-    masses = np.bincount(start.aggregate, start.radius**3, minlength=2)
+    masses = np.bincount(start.aggregate, grain_masses(vars(start)), minlength=2)
     return has_plate(vars(start)) or bool(np.ptp(masses) <= UNLIKE * masses.max())
 
 
@@ -51,7 +51,7 @@ def outcome_of_run(run):
         if on_plate:
             found = plate_outcome(vars(start), vars(end), met(run))
         else:
-            at_start = start.radius, start.aggregate, start.velocity, start.contact_pairs
+            at_start = grain_masses(vars(start)), start.aggregate, start.velocity, start.contact_pairs
             found = collision_outcome(*at_start, end.velocity, end.contact_pairs, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
@@ -65,7 +65,7 @@ def outcome_of_run(run):
     if on_plate:
         why = why_undecided_on_plate(found.kind, vars(start), vars(end), run.derived, touch, recent)
     else:
-        counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, start.radius**3)
+        counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, grain_masses(vars(start)))
         why = why_undecided(found.kind, counted, vars(end), run.derived, touch, recent)
     return found.if_decided(why)
 

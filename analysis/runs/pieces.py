@@ -22,7 +22,7 @@ PIECES = (
 )
 
 
-def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
+def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None, mass=None):
     """Table of the pieces of a state, numbered as fragment_labels does: how large each is, and how fluffy.
 
     Parameters
@@ -34,6 +34,8 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
         1 for grains of the projectile.
     cell_size : (3,) array, optional
         Edges of the periodic cell [m], in which a piece has no size.
+    mass : (N,) array, optional
+        In any unit; as of one density if left out.
 
     Returns
     -------
@@ -51,7 +53,8 @@ def fragments(position, radius, contact_pairs, aggregate=None, cell_size=None):
     if not len(radius):
         raise ValueError("position: must have one grain or more")
     contact_pairs = pairs("contact_pairs", contact_pairs, len(radius))
-    labels, mass = fragment_labels(len(radius), contact_pairs), (radius / radius.max()) ** 3
+    labels, volume = fragment_labels(len(radius), contact_pairs), (radius / radius.max()) ** 3
+    mass = volume if mass is None else numbers("mass", mass, radius.shape, positive=True)
     sizes, masses = fragment_sizes(labels), fragment_masses(labels, mass)
     of_projectile = np.zeros(len(radius), dtype=bool)
     if aggregate is not None:

@@ -177,7 +177,7 @@ def test_outcome_on_a_plate_and_whether_it_is_decided(kind, state, since_touch, 
 )
 def test_two_grains_that_meet_in_time(separation, velocity, offset, time, meets):
     position, moving = np.array([[0.0, 0, 0], [separation, offset, 0]]), np.array([[0.0, 0, 0], [velocity, 0, 0]])
-    grains = position, moving, np.ones(2), np.array([0, 1])
+    grains = position, moving, np.ones(2), np.ones(2), np.array([0, 1])
     assert pieces_can_meet(*grains, time) is meets
     assert [pieces_that_can_meet(piece, *grains, time).tolist() for piece in (0, 1)] == [[False, meets], [meets, False]]
 

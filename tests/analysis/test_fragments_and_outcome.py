@@ -48,8 +48,8 @@ START, STILL = _state(MEETING, (0, 20), (20, 20)), np.zeros((40, 3))
 
 def _outcome(start, end, met=True):
     both = "velocity", "contact_pairs"
-    about = (start[name] for name in ("radius", "aggregate", *both))
-    return collision_outcome(*about, *(end[name] for name in both), met)
+    about = (start[name] for name in ("aggregate", *both))
+    return collision_outcome(start["radius"] ** 3, *about, *(end[name] for name in both), met)
 
 
 @pytest.mark.parametrize(

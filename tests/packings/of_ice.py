@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from yade_scripts.materials import MATERIALS, equilibrium_overlap
+from yade_scripts.materials import MATERIALS, GrainParameters, equilibrium_overlap
 
 ICE = MATERIALS["ice"]
+GRAINS = GrainParameters().filled_in()
 RADIUS = ICE.grainRadius
 OVERLAP = equilibrium_overlap(ICE)
 SPACING = 2 * RADIUS - OVERLAP  # of grains at rest

@@ -11,6 +11,7 @@ from yade_scripts.materials import pair_constants
 from yade_scripts.packings import aggregate
 from yade_scripts.packings.aggregate import AggregateParameters
 from yade_scripts.packings.packing import touching_distance
+from yade_scripts.parameters import ParameterError
 
 UNLIKE = {
     "two": dict(sizes="two", sizeRatio=2.5, sizeFraction=0.3),
@@ -88,6 +89,23 @@ def test_sizes_of_grains_are_distributed_as_their_parameters_say():
     assert np.abs(logarithm).max() <= 0.4 * aggregate.WIDEST
     # the standard deviation of a normal distribution cut off at 2.5 of it is 0.9545 of it
     assert logarithm.std() == pytest.approx(0.4 * 0.9545, rel=0.02) and abs(logarithm.mean()) < 4 * 0.4 / 20000**0.5
+
+
+def test_sizes_of_a_power_law_and_of_a_file(tmp_path):
+    """Volumes of a power law against its closed form, and a file's radii in another order, or drawn."""
+    radii_of = lambda **given: aggregate.radii(AggregateParameters.parse({"packing": "bpca", **given}), 0)
+    power = dict(sizes="powerlaw", smallest=0.5e-7, largest=5e-7, grains=20000)
+    for exponent, mean in ((-3.5, 0.80954e-7), (-1.0, 4.5e-7 / np.log(10))):
+        found = radii_of(**power, sizeExponent=exponent)
+        assert found.min() >= 0.5e-7 and found.max() <= 5e-7
+        assert abs(found.mean() - mean) < 4 * found.std() / 20000**0.5
+    np.savetxt(tmp_path / "radii.txt", np.linspace(1e-7, 2e-7, 50))
+    file = dict(sizes="file", sizesFile=str(tmp_path / "radii.txt"))
+    assert np.array_equal(np.sort(radii_of(**file, grains=50)), np.loadtxt(tmp_path / "radii.txt"))
+    assert set(radii_of(**file, grains=70)) <= set(np.loadtxt(tmp_path / "radii.txt"))
+    (tmp_path / "radii.txt").write_text("0.1\n0.2\n")  # in micrometres
+    with pytest.raises(ParameterError, match="sizesFile = .*: not radii of 1e-09 to 0.001 m; must be"):
+        radii_of(**file, grains=50)
 
 
 def test_characteristic_radius_is_that_of_a22():

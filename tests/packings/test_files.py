@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from of_ice import ICE, OVERLAP, PAIR, RADIUS
+from of_ice import GRAINS, ICE, OVERLAP, PAIR, RADIUS
 from refused import refused
 from running import make_packing
 
 from yade_scripts import packings
-from yade_scripts.experiments.collision import KIND, CollisionParameters, limit_of_unlike, place, require_stable_with
+from yade_scripts.experiments.collision import KIND, CollisionParameters, place, require_stable_with, step_limit
+from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import make
 from yade_scripts.packings.packing import OF_CONTACTS, packing_from_file
 from yade_scripts.parameters import ParameterError
@@ -56,7 +57,7 @@ def write(path, position, radius, **parameters):
 def test_grains_that_no_run_can_start_from_give_one_line(tmp_path, position, radius, message):
     path = write(tmp_path / "a.npz", position, np.array(radius))
     with refused(packings.PackingError, f"{path}: ", message):
-        packing_from_file(path, RADIUS, OVERLAP)
+        packing_from_file(path, GRAINS, OVERLAP)
 
 
 def test_grains_of_another_material_are_refused(tmp_path):
@@ -66,8 +67,8 @@ def test_grains_of_another_material_are_refused(tmp_path):
     given = {name: getattr(material, name) for name in OF_CONTACTS}
     path = write(tmp_path / "a.npz", PAIR, np.full(2, RADIUS), overlap=OVERLAP, packing="compressed", **given)
     with refused(packings.PackingError, f"{path}: made of grains with young = 3.5e+09, not 7e+09"):
-        packing_from_file(path, RADIUS, OVERLAP, grains=ICE)
-    assert packing_from_file(path, RADIUS, OVERLAP, grains=material).grains == 2
+        packing_from_file(path, GRAINS, OVERLAP)
+    assert packing_from_file(path, GRAINS.changed(young=3.5e9, surfaceEnergy=0.05), OVERLAP).grains == 2
 
 
 def test_the_step_is_stable_for_the_smallest_grain(tmp_path):
@@ -78,9 +79,9 @@ def test_the_step_is_stable_for_the_smallest_grain(tmp_path):
 
     def require(step, **given):
         parameters = CollisionParameters.parse(dict(stepFraction=step, **given))
-        require_stable_with(parameters, place(parameters, OVERLAP)[1])
+        require_stable_with(parameters, pair_constants(parameters), place(parameters, OVERLAP)[1])
 
-    limit = limit_of_unlike(CollisionParameters.parse(sizes), (RADIUS / 2, RADIUS))
+    limit = step_limit(CollisionParameters.parse(sizes), pair_constants(GRAINS), (RADIUS / 2, RADIUS))
     assert limit < 0.2
     require(0.99 * limit, **sizes)
     require(0.7 * limit, packing="file", file=path)

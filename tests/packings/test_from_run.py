@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from of_ice import ICE, OVERLAP
+from of_ice import GRAINS, ICE, OVERLAP
 from of_ice import SPACING as APART
 from running import COMPRESS, completed, make_packing
 from scenes import *
@@ -107,6 +107,6 @@ def test_the_largest_piece_of_a_collision_is_at_rest_and_hardly_moved(tmp_path):
     assert np.all(one.position[:, 2] == 0) and not np.allclose(one.position, other.position)
     assert packings.gyration_radius(one) == pytest.approx(packings.gyration_radius(packing), rel=1e-12)
     packings.save(tmp_path / "a.npz", one)
-    back = packing_from_file(str(tmp_path / "a.npz"), R, PAIR.equilibrium_overlap, planar=True)
+    back = packing_from_file(str(tmp_path / "a.npz"), GRAINS, PAIR.equilibrium_overlap, planar=True)
     assert np.allclose(back.position, one.position, atol=1e-12 * R)
     assert packings.load(tmp_path / "a.npz").parameters["packing"] == "collided"

@@ -15,11 +15,11 @@ from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
 from analysis.runs.measured import outcome_of_run
 from yade_scripts import packings, time_step
-from yade_scripts.materials import pair_constants, require_small_contacts
+from yade_scripts.materials import derived_materials, pair_constants, require_small_contacts
 from yade_scripts.packings import aggregate
 from yade_scripts.packings.aggregate import MOST_GRAINS, NAMED_PACKING, AggregateParameters, make
-from yade_scripts.packings.packing import SUM, sum_of_file
-from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair
+from yade_scripts.packings.packing import SUM, arrays_of_grains, sum_of_file
+from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair, velocities_of
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Ending, Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
@@ -82,7 +82,9 @@ class CollisionParameters(AggregateParameters, RunParameters):
         ("projectileFile", "packing", ["file"]),
         ("impactStepFraction", "engine", ["fused"]),
         *((name, "target", [AGGREGATE]) for name in ("projectileGrains", "projectileFile", "impact", "neck")),
-        *((name, "neck", [0]) for name in ("sizes", "initialOverlap")),  # bonds start at rest
+        *(
+            (name, "neck", [0]) for name in ("sizes", "initialOverlap", "layout")
+        ),  # bonds start at rest, of equal grains
     ]
 
     def filled_in(self):
@@ -118,7 +120,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
 def complete(parameters, constants, threads):
     """The parameters with what depends on the contact and on YADE's threads. Raises ParameterError."""
-    require_small_contacts(constants)
+    for own in parameters.of_each():
+        require_small_contacts(pair_constants(own))
     _require_sintered(parameters.neck, constants)
     return with_step(parameters, constants).with_threads(threads)
 
@@ -130,30 +133,23 @@ def with_step(parameters, constants):
     return time_step.with_step(parameters, step_limit(parameters, constants), error, depends_on)
 
 
-def step_limit(parameters, constants):
-    """Largest stable stepFraction [t0] of a collision of grains of one size."""
+def step_limit(parameters, constants, radii=None):
+    """Largest stable stepFraction [t0] of a collision of grains of one size, or of radii (smallest, largest) [m]."""
     filling = time_step.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
+    if radii or len(parameters.material_names) > 1:
+        return time_step.limit_of_unlike(parameters, constants, filling, radii)
     return time_step.step_limit(constants, filling)
 
 
-def require_stable_with(parameters, pair):
+def require_stable_with(parameters, constants, pair):
     """Raise ParameterError when the step or contacts are too large for the smallest grain of a pair of packings."""
     radii = np.concatenate([packing.radius for packing in pair])
     smallest, largest = float(radii.min()), float(radii.max())
     if smallest != largest:
-        require_small_contacts(pair_constants(parameters, (smallest, smallest)))
-        limit = limit_of_unlike(parameters, (smallest, largest))
+        for own in parameters.of_each():
+            require_small_contacts(pair_constants(own, (smallest, smallest)))
+        limit = step_limit(parameters, constants, (smallest, largest))
         time_step.require_stable(parameters.stepFraction, limit, "filling and drag, with grains of these sizes")
-
-
-def limit_of_unlike(parameters, radius_range):
-    """Largest stable stepFraction of grains of unlike size (smallest, largest) [m].
-
-    The fastest vibration is that of the smallest among the largest: its contacts are stiffer than among its own."""
-    stiffest = pair_constants(parameters, radius_range)
-    smallest = pair_constants(parameters, (radius_range[0], radius_range[0]))
-    stiffest.update(reducedMass=smallest["reducedMass"], timeUnit=pair_constants(parameters)["timeUnit"])
-    return step_limit(parameters, stiffest)
 
 
 def _require_sintered(neck, constants):
@@ -176,7 +172,7 @@ def prepare(parameters, threads):
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
     for packing in pair:
         packings.require_connected(packing)
-    require_stable_with(parameters, pair)
+    require_stable_with(parameters, constants, pair)
     touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
     if parameters.duration is None:
         duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)
@@ -190,19 +186,19 @@ def prepare(parameters, threads):
         reason = f"as given: {short:g} t0 until {until:.4g} s, then {step:g} t0"
     if parameters.endWhenApart:
         controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
-    material = yade_scene.material_of(parameters)
+    materials = yade_scene.materials_of(parameters)
 
     def build():
-        yade_scene.add_bodies(pair, velocities, material, bool(parameters.planar))
+        yade_scene.add_bodies(pair, velocities, materials, bool(parameters.planar))
         if parameters.target == WALL:
-            yade_scene.add_plane(AXIS, 0.0, material)
+            yade_scene.add_plane(AXIS, 0.0, materials[0])
 
     resting = {RESTING: np.nan} if parameters.endWhenApart else {}
     return Scene(
         parameters=parameters,
         constants=constants,
         derived={**_sizes(aggregate_radius, pair, parameters), **({} if touch is None else {"firstTouch": touch})},
-        aggregate=np.repeat(np.arange(len(pair)), [packing.grains for packing in pair]),
+        grains=arrays_of_grains(pair),
         build=build,
         series=lambda state: {**series(state, aggregate_radius), **resting},
         law={"neck": parameters.neck},
@@ -227,8 +223,8 @@ def place(parameters, overlap):
         # A24 section 3: centres at -/+(R_agg + r) in x; offset in y as in A22 eq 27
         reach = (parameters.radius + 1) * parameters.grainRadius
         centre = np.array([reach, parameters.impact * reach, 0.0])
-        half = np.array([parameters.velocity / 2, 0.0, 0.0])
-        pair, velocities = [packings.moved(pair[0], -centre), packings.moved(pair[1], centre)], [half, -half]
+        pair = [packings.moved(pair[0], -centre), packings.moved(pair[1], centre)]
+        velocities = velocities_of(pair, np.array([-parameters.velocity, 0.0, 0.0]))
     else:
         parameters = _with_size(parameters, pair)
         pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)
@@ -290,7 +286,8 @@ def series(state, aggregate_radius):
 
 def _end_when_apart(parameters, constants, aggregate_radius, touch):
     """Scene.control of endWhenApart: pieces have been at rest for a while."""
-    known = {**constants, **(constants["bond"] or {}), "aggregateRadius": aggregate_radius}
+    known = {**constants, **(constants["bond"] or {}), **derived_materials(parameters)}
+    known["aggregateRadius"] = aggregate_radius
     known.update(grainRadius=parameters.grainRadius, density=parameters.density)
     begin = -np.inf if touch is None else touch
 
@@ -391,6 +388,8 @@ def expected(parameters, run):
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
     first = "projectilePacking" if parameters.target == WALL else "targetPacking"
+    if derived.get("materials", []) != derived_materials(parameters).get("materials", []):
+        found["materials"] = f"{parameters.materials} as it is now"
     for name, of in (("file", first), ("projectileFile", "projectilePacking")):
         file, kept = getattr(parameters, name), (derived.get(of) or {}).get(SUM)
         if file and kept and sum_of_file(file) not in (kept, None):

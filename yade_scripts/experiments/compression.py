@@ -16,10 +16,10 @@ from analysis.theory.aggregates import bcca_coordination
 from yade_scripts import packings, time_step
 from yade_scripts.experiments import compression_end as end
 from yade_scripts.experiments.compression_end import AXES, LOOSE, deform, shrinking_rate
-from yade_scripts.materials import GrainParameters, pair_constants, require_small_contacts
-from yade_scripts.packings.aggregate import MOST_GROWN
+from yade_scripts.materials import PAIR, GrainParameters, pair_constants, require_small_contacts
+from yade_scripts.packings.aggregate import MOST_GROWN, with_materials_at_rest
 from yade_scripts.packings.ballistic import rbd
-from yade_scripts.packings.packing import brought_to_rest
+from yade_scripts.packings.packing import arrays_of_grains
 from yade_scripts.packings.placing import require_apart_from_images, smallest_edge
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, SWITCH, Check, ParameterError, between, one_of, parameter
 from yade_scripts.run.kind import Estimate, Kind, Scene
@@ -100,7 +100,7 @@ class CompressionParameters(GrainParameters, RunParameters):
     ONLY_WITH = [
         ("stretchFilling", "stretch", ["x", "xyz"]),
         # the functors have no plates in periodic cells, and walls only come together
-        *((name, "boundary", [PERIODIC]) for name in ("engine", "stretch", "initialFilling")),
+        *((name, "boundary", [PERIODIC]) for name in ("engine", "stretch", "initialFilling", "layout")),
     ]
 
     def title(self):
@@ -115,6 +115,8 @@ class CompressionParameters(GrainParameters, RunParameters):
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
+        if self.layout == PAIR:
+            raise ParameterError(f"layout = {PAIR}: a compression has one cluster; must be another one")
         at_rest = 0 if self.boundary == WALLS else self.atRest
         return super(CompressionParameters, self.changed(packing=packing, atRest=at_rest)).filled_in()
 
@@ -131,15 +133,23 @@ class CompressionParameters(GrainParameters, RunParameters):
 
 def complete(parameters, constants, threads):
     """The parameters with what depends on the contact and on YADE's threads. Raises ParameterError."""
-    require_small_contacts(constants)
+    for own in parameters.of_each():
+        require_small_contacts(pair_constants(own))
     return with_step(_with_final_filling(parameters, constants), constants).with_threads(threads)
 
 
 def with_step(parameters, constants):
     """time_step.with_step() of a compression with a finalFilling."""
-    limit = time_step.step_limit(constants, parameters.finalFilling)
+    limit = step_limit(parameters, constants)
     error = lambda: time_step.compression_error(parameters, constants)
     return time_step.with_step(parameters, limit, error, "final filling and damping")
+
+
+def step_limit(parameters, constants):
+    """Largest stable stepFraction [t0] of a compression with a finalFilling."""
+    if len(parameters.material_names) > 1:
+        return time_step.limit_of_unlike(parameters, constants, parameters.finalFilling)
+    return time_step.step_limit(constants, parameters.finalFilling)
 
 
 def _with_final_filling(parameters, constants):
@@ -191,7 +201,7 @@ def prepare(parameters, threads):
         parameters=parameters,
         constants=constants,
         derived={"initialEdge": edges[0], **moved, **height, "rollingEnergy": 6 * pi**2 * rolling},  # K13 eq 1
-        aggregate=np.zeros(packing.grains, dtype=int),
+        grains=arrays_of_grains([packing]),
         build=build,
         series=own_series,
         law={"linearDamping": parameters.linearDamping},
@@ -199,7 +209,7 @@ def prepare(parameters, threads):
         control=come_down if walls else ending,
         ended_by=ending.ended_by,
         interval=max(1, round(between / parameters.stepFraction)),
-        step_choice=time_step.reason(parameters, time_step.step_limit(constants, parameters.finalFilling)),
+        step_choice=time_step.reason(parameters, step_limit(parameters, constants)),
     )
 
 
@@ -211,8 +221,7 @@ def _cluster(parameters, constants):
 
     radius, overlap = parameters.grainRadius, constants["equilibriumOverlap"]
     cluster = packings.bcca(parameters.grains, radius, overlap, parameters.seed)
-    if parameters.atRest:
-        cluster = brought_to_rest(cluster, radius, overlap)
+    cluster = with_materials_at_rest(cluster, parameters, overlap)
     edge = smallest = smallest_edge(cluster)
     if parameters.initialFilling is not None:
         volume = parameters.grains * 4 / 3 * pi * parameters.grainRadius**3
@@ -222,9 +231,9 @@ def _cluster(parameters, constants):
         except packings.PackingError as problem:
             given, most = parameters.initialFilling, volume / smallest**3
             raise ParameterError(f"initialFilling = {given:g}: {problem}, as with {most:.4g} for this seed") from None
-    mass = cluster.radius**3 * (4 / 3 * pi * parameters.density)
+    mass = arrays_of_grains([cluster]).get("mass", cluster.radius**3 * (4 / 3 * pi * parameters.density))
     rate = shrinking_rate(parameters, constants["timeUnit"])
-    material = yade_scene.material_of(parameters)
+    materials = yade_scene.materials_of(parameters)
 
     def build():
         omega = Omega()
@@ -232,7 +241,7 @@ def _cluster(parameters, constants):
         omega.cell.setBox(edge, edge, edge)
         # 1 gives grains the mean flow when the rate changes (K13 eq 12), and leaves them to themselves afterwards
         omega.cell.homoDeform = 1
-        yade_scene.add_bodies([cluster], [(0, 0, 0)], material)
+        yade_scene.add_bodies([cluster], [(0, 0, 0)], materials)
         deform(3 * (-rate,))
 
     return cluster, np.full(3, edge), build, lambda state: series(state, mass)
@@ -250,16 +259,16 @@ def _layer(parameters, constants):
     layer = rbd(parameters.grains, radius, constants["equilibriumOverlap"], on_plate, edge, parameters.seed)
     height = layer.position[:, UP].max() + (1 + GAP) * radius
     rate = shrinking_rate(parameters, constants["timeUnit"])
-    material = yade_scene.material_of(parameters)
+    materials = yade_scene.materials_of(parameters)
 
     def build():
         omega = Omega()
         omega.periodic = True
         omega.cell.setBox(edge, edge, 2 * height + 10 * layer.radius.max())
         omega.cell.homoDeform = 0
-        yade_scene.add_bodies([layer], [(0, 0, 0)], material)
-        yade_scene.add_plane(UP, 0.0, material)
-        yade_scene.add_plane(UP, height, material, -rate * height)
+        yade_scene.add_bodies([layer], [(0, 0, 0)], materials)
+        yade_scene.add_plane(UP, 0.0, materials[0])
+        yade_scene.add_plane(UP, height, materials[0], -rate * height)
 
     return layer, [edge, edge, height], build, series_between_walls
 

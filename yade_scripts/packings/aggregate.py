@@ -1,10 +1,20 @@
 """The aggregate that a run's parameters describe."""
 
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from yade_scripts.materials import GrainParameters
+from yade_scripts.materials import (
+    GRAINS,
+    HALVES,
+    MIXED,
+    PAIR,
+    GrainParameters,
+    derived_materials,
+    equilibrium_overlap,
+    overlaps,
+)
 from yade_scripts.packings.ballistic import bcca, bpca
 from yade_scripts.packings.lattice import cpe, grain_number
 from yade_scripts.packings.packing import (
@@ -21,8 +31,9 @@ MOST_GRAINS = 5_000_000
 MOST_GROWN = {"bcca": 100_000, "bpca": 2_000_000}  # made in a minute, in minutes
 GRAINS_GROWN = 1024
 MADE = ("cpe", *MOST_GROWN)
-EQUAL, TWO, LOGNORMAL = SIZES = ("equal", "two", "lognormal")
+EQUAL, TWO, LOGNORMAL, POWER, FILE = SIZES = ("equal", "two", "lognormal", "powerlaw", "file")
 OF_SIZES = {"sizeRatio": TWO, "sizeFraction": TWO, "sizeSpread": LOGNORMAL}
+OF_SIZES |= {"sizeExponent": POWER, "smallest": POWER, "largest": POWER, "sizesFile": FILE}
 NAMED_PACKING = Check("a packing that make_packing.py wrote", lambda text: text != "")
 UP_TO_ONE = Check("> 0 and at most 1", lambda x: 0 < x <= 1)
 WIDEST = 2.5  # standard deviations of ln r at which a log-normal distribution is cut off on both sides
@@ -50,7 +61,11 @@ class AggregateParameters(GrainParameters):
     )
     planar: int = parameter(0, SWITCH, "1: grains confined to a plane")
     file: str | None = parameter(None, NAMED_PACKING, "packing of packing = file")
-    sizes: str = parameter(EQUAL, one_of(SIZES), "radii of grains of bcca and bpca: all grainRadius, two, log-normal")
+    sizes: str = parameter(
+        EQUAL,
+        one_of(SIZES),
+        "radii of grains of bcca and bpca: all grainRadius, two, log-normal, a power law, or drawn from a file",
+    )
     sizeRatio: float | None = parameter(None, between(0.1, 10.0), "sizes = two: radius of the others/grainRadius", "1")
     sizeFraction: float | None = parameter(None, between(0.0, 1.0), "sizes = two: fraction of the others (0.5)", "1")
     sizeSpread: float | None = parameter(
@@ -58,6 +73,14 @@ class AggregateParameters(GrainParameters):
         Check("> 0 and at most 0.7", lambda x: 0 < x <= 0.7),
         f"sizes = lognormal: standard deviation of ln r around ln grainRadius, cut off at {WIDEST:g} of it",
         "1",
+    )
+    sizeExponent: float | None = parameter(None, between(-10.0, 10.0), "sizes = powerlaw: n of dN/dr ~ r^n", "1")
+    smallest: float | None = parameter(None, POSITIVE, "sizes = powerlaw: smallest radius", "m", usual=GRAINS)
+    largest: float | None = parameter(None, POSITIVE, "sizes = powerlaw: largest radius", "m", usual=GRAINS)
+    sizesFile: str | None = parameter(
+        None,
+        Check("a text file with a radius [m] a line", lambda text: text != ""),
+        "sizes = file: radii, each grain's drawn from them; as many as grains: each once",
     )
     removeLooseGrains: int = parameter(0, SWITCH, "1: of a cpe aggregate only the largest connected piece is kept")
     initialOverlap: float = parameter(
@@ -85,7 +108,12 @@ class AggregateParameters(GrainParameters):
         for name, of in OF_SIZES.items():
             if self.sizes == of and getattr(found, name) is None:
                 raise ParameterError(f"{name}: not given with sizes = {of}; {self.columns()[name].must}")
+        if self.sizes == POWER and not self.smallest < self.largest:
+            raise ParameterError(f"smallest = {self.smallest:g}: must be below largest = {self.largest:g}")
         if self.packing == "cpe":
+            if len(self.material_names) > 1 and self.layout != PAIR:
+                must = f"must be bcca, bpca or file, or layout = {PAIR}"
+                raise ParameterError(f"packing = cpe: a lattice of two materials cannot be at rest; {must}")
             found = found.changed(atRest=0)._of_cpe()
         elif self.is_grown:
             found = found.changed(grains=GRAINS_GROWN if self.grains is None else self.grains)
@@ -122,18 +150,56 @@ def require_growable(packing, name, grains):
 def make(parameters, overlap, index):
     """Aggregate number index of a run, around the origin; overlap: of touching grains of grainRadius [m]. Its
     parameters name the material, so that no run of others starts with contacts out of rest. Raises PackingError."""
-    packing = _as_made(parameters, overlap, index)
-    if not parameters.atRest or packing.parameters["packing"] == "cpe":  # a lattice, meant to be as it is
+    if parameters.layout != PAIR:
+        return with_materials_at_rest(_as_made(parameters, overlap, index), parameters, overlap, index)
+    side = 1 if index or getattr(parameters, "target", None) == "wall" else 0
+    own = parameters.of_each()[side]
+    overlap = equilibrium_overlap(own)
+    packing = with_materials_at_rest(_as_made(own, overlap, index), own, overlap)
+    return _of_materials(packing, parameters, np.full(packing.grains, side))
+
+
+def with_materials_at_rest(packing, parameters, overlap, index=0):
+    """The packing with the run's materials and its contacts at rest, as far as parameters ask for either; the others as
+    of make(). Raises PackingError."""
+    each = parameters.of_each()
+    if len(each) > 1:
+        overlap = overlaps(each)
+        packing = (
+            packing
+            if packing.kind is not None
+            else _of_materials(packing, parameters, _mixed(packing, parameters, index))
+        )
+    elif packing.parameters["packing"] == "cpe":  # a lattice, at rest or meant to be as it is
+        return packing
+    if not parameters.atRest:
         return packing
     rested = brought_to_rest(packing, parameters.grainRadius, overlap)
     moved = rested.parameters["largestMotion"] > 0
-    return replace(rested, position=centred(rested.position, rested.radius)) if moved else rested
+    return replace(rested, position=centred(rested.position, rested.radius, rested.density)) if moved else rested
+
+
+def _mixed(packing, parameters, index):
+    """(N,) which material each grain of a packing is of, as `layout` has it."""
+    kind, second = np.zeros(packing.grains, dtype=int), round(parameters.materialFraction * packing.grains)
+    if parameters.layout == MIXED:
+        order = random_stream(parameters.seed, index, 2).permutation(packing.grains)
+    else:
+        place = packing.position[:, 0] if parameters.layout == HALVES else np.linalg.norm(packing.position, axis=1)
+        order = np.argsort(place, kind="stable")
+    kind[order[packing.grains - second :]] = 1
+    return kind
+
+
+def _of_materials(packing, parameters, kind):
+    about = {**packing.parameters, "materials": derived_materials(parameters)["materials"]}
+    return replace(packing, kind=kind.astype(np.int32), parameters=about)
 
 
 def _as_made(parameters, overlap, index):
     p, planar = parameters, bool(parameters.planar)
     if p.packing == "file":
-        return packing_from_file(p.file, p.grainRadius, overlap, planar, p)
+        return packing_from_file(p.file, p, overlap, planar)
     if p.packing == "cpe":
         apart = overlap * p.initialOverlap
         packing = cpe(p.filling, p.radius * p.grainRadius, p.grainRadius, apart, p.seed, index, planar)
@@ -155,6 +221,14 @@ def radii(parameters, index):
         while (outside := np.abs(deviations) > WIDEST).any():
             deviations[outside] = stream.normal(size=np.count_nonzero(outside))
         return p.grainRadius * np.exp(p.sizeSpread * deviations)
+    if p.sizes == POWER:
+        uniform, power = stream.random(p.grains), p.sizeExponent + 1.0
+        if power == 0.0:
+            return p.smallest * (p.largest / p.smallest) ** uniform
+        return (p.smallest**power + uniform * (p.largest**power - p.smallest**power)) ** (1.0 / power)
+    if p.sizes == FILE:
+        given = _radii_in(p.sizesFile)
+        return stream.permutation(given) if len(given) == p.grains else stream.choice(given, p.grains)
     found = np.full(p.grains, float(p.grainRadius))
     if p.sizes == EQUAL:
         return found
@@ -164,3 +238,16 @@ def radii(parameters, index):
         raise ParameterError(f"sizeFraction = {p.sizeFraction:g}: of {p.grains} grains none, or all; {must}")
     found[:others] *= p.sizeRatio
     return stream.permutation(found)
+
+
+def _radii_in(file):
+    """Radii (K,) [m] of a text file; ParameterError."""
+    must = "must be a text file with a radius [m] a line"
+    try:
+        with warnings.catch_warnings(action="error"):  # of an empty file
+            radii = np.loadtxt(file, ndmin=1)
+    except (OSError, ValueError, UserWarning) as error:
+        raise ParameterError(f"sizesFile = {file}: {' '.join(str(error).split())}; {must}") from None
+    if radii.ndim > 1 or not np.all((radii >= GRAINS.low) & (radii <= GRAINS.high)):
+        raise ParameterError(f"sizesFile = {file}: not radii of {GRAINS.low:g} to {GRAINS.high:g} m; {must}")
+    return radii

@@ -58,6 +58,10 @@ def imported(path, texts):
     origin, its contacts at rest. texts: {name: text} of ImportParameters. Grains are of the file's material, unless one
     is given. Raises ParameterError and PackingError."""
     parameters = ImportParameters.parse(texts if "material" in texts else {**_material_of(path), **texts})
+    if len(parameters.material_names) > 1:
+        raise ParameterError(
+            f"material = {parameters.material}: of an imported aggregate; must be one (a run mixes them)"
+        )
     spheres = read_spheres(path, MOST_GRAINS, parameters.names and parameters.names.split(","))
     position, radius, tolerance, cell = _in_metres(path, spheres, parameters, "grainRadius" in texts)
     grain_radius = float(np.sort(radius)[len(radius) // 2])  # by which they are known

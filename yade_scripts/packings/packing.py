@@ -19,7 +19,7 @@ from analysis.measures.structure import fractal_dimension, grains_within, mean_c
 from analysis.progress import progress
 from analysis.runs.files import RunFolderError, npz, read_arrays, write_file
 from analysis.runs.folder import read_quantities
-from analysis.runs.format import FORMAT, STATE
+from analysis.runs.format import FORMAT, STATE, same
 from yade_scripts.parameters import InputError, one_line
 
 NEAREST = 3.0  # grain radii: nearer than that numbers of grains depend on contacts
@@ -31,7 +31,7 @@ MOST_MOVES = 20
 ITERATIONS = 300
 
 SUM = "sha256"  # of a packing, among its parameters
-SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius")]
+SPHERES = [quantity for quantity in STATE if quantity.name in ("position", "radius", "material")]
 OF_CONTACTS = ("young", "poisson", "surfaceEnergy")  # what contacts at rest depend on, beside the radius
 MOST_PRESSED = 1.05  # equilibrium overlaps that a contact may keep where not all can be at rest together
 DEEPEST = 1.1  # equilibrium overlaps that a contact of a run's packing may have, as if pressed a little
@@ -49,10 +49,24 @@ class Packing:
     radius: np.ndarray  # (N,) [m]
     seed: int
     parameters: dict = field(default_factory=dict)  # what the packing was made from
+    kind: np.ndarray | None = None  # (N,) int: which of parameters["materials"], where there are several
 
     @property
     def grains(self):
         return len(self.radius)
+
+    @property
+    def density(self):
+        """(N,) [kg/m^3] of grains of several materials, else 1.0."""
+        if self.kind is None:
+            return 1.0
+        return np.array([material["density"] for material in self.parameters["materials"]])[self.kind]
+
+    def of(self, rows, **about):
+        """The packing of some of its grains, which are where they were; about: what else its parameters say."""
+        kind = None if self.kind is None else self.kind[rows]
+        parameters = {**self.parameters, **about}
+        return Packing(self.position[rows], self.radius[rows], self.seed, parameters, kind)
 
 
 def random_stream(seed, index, *more):
@@ -60,9 +74,9 @@ def random_stream(seed, index, *more):
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(index, *more)))
 
 
-def centred(position, radius):
-    """Positions (N, 3) relative to the centre of mass of grains of one density and these radii (N,)."""
-    return position - np.average(position, axis=0, weights=(radius / radius.max()) ** 3)
+def centred(position, radius, density=1.0):
+    """Positions (N, 3) relative to the centre of mass of grains of these radii (N,) and densities, in any unit."""
+    return position - np.average(position, axis=0, weights=(radius / radius.max()) ** 3 * density)
 
 
 def randomly_turned(position, stream, planar):
@@ -83,9 +97,10 @@ def extent(packing):
 
 
 def gyration_radius(packing):
-    """r_gyr [m]: root of the mean square distance of the mass from its centre; grains of one density, as points."""
-    mass = (packing.radius / packing.radius.max()) ** 3
-    return float(np.sqrt(np.average((centred(packing.position, packing.radius) ** 2).sum(axis=1), weights=mass)))
+    """r_gyr [m]: root of the mean square distance of the mass from its centre, grains as points."""
+    mass = (packing.radius / packing.radius.max()) ** 3 * packing.density
+    position = centred(packing.position, packing.radius, packing.density)
+    return float(np.sqrt(np.average((position**2).sum(axis=1), weights=mass)))
 
 
 def characteristic_radius(packing):
@@ -118,9 +133,11 @@ def touching_distance(first, second, grain_radius, overlap):
     return first + second - overlap * np.cbrt(2 * first * second / ((first + second) * grain_radius))
 
 
-def equilibrium_overlaps(radius, pairs, grain_radius, overlap):
-    """Overlaps (M,) [m] at rest of pairs (M, 2), where that of two grains of grain_radius is `overlap`."""
+def equilibrium_overlaps(radius, pairs, grain_radius, overlap, kind=None):
+    """Overlaps (M,) [m] at rest of pairs (M, 2), where that of two grains of grain_radius is `overlap`: of materials
+    that `kind` (N,) numbers a matrix (K, K)."""
     first, second = radius[pairs].T
+    overlap = overlap if kind is None else overlap[tuple(kind[pairs].T)]
     return first + second - touching_distance(first, second, grain_radius, overlap)
 
 
@@ -136,14 +153,14 @@ def largest_cluster(grains, pairs):
 def largest_piece(packing):
     """The largest connected piece of a packing, where it was; its parameters count the grains that are `dropped`."""
     kept, _ = largest_cluster(packing.grains, contacts(packing))
-    about = {**packing.parameters, "dropped": packing.grains - len(kept)}
-    return Packing(packing.position[kept], packing.radius[kept], packing.seed, about)
+    return packing.of(kept, dropped=packing.grains - len(kept))
 
 
 def require_connected(packing):
     """Raise PackingError when a packing is in crumbs, so that a collision of it has no outcome."""
     try:
-        belongs_to_an_aggregate(np.zeros(packing.grains, dtype=int), contacts(packing), packing.radius**3)
+        mass = packing.radius**3 * packing.density
+        belongs_to_an_aggregate(np.zeros(packing.grains, dtype=int), contacts(packing), mass)
     except ValueError as error:
         raise PackingError(str(error)) from None
 
@@ -167,21 +184,31 @@ def description(packing):
     return ", ".join(words)
 
 
+def arrays_of_grains(packings):
+    """{name: (N,)} of what a run's states have of the grains of its packings and YADE does not tell: the aggregate, of
+    several materials material and mass [kg]."""
+    found = {"aggregate": np.repeat(np.arange(len(packings)), [packing.grains for packing in packings])}
+    if packings[0].kind is not None:
+        mass = [4 / 3 * np.pi * packing.radius**3 * packing.density for packing in packings]
+        found |= {"material": np.concatenate([packing.kind for packing in packings]), "mass": np.concatenate(mass)}
+    return found
+
+
 # ---- contacts at rest ----
 
 
-def at_rest(position, radius, pairs, grain_radius, overlap):
+def at_rest(position, radius, pairs, grain_radius, overlap, kind=None):
     """Bring the contacts of pairs (M, 2) to rest; grains that come to overlap on the way are contacts too.
 
     Newton's method on the distances of the grains that touch, each step the smallest motion that solves the linearised
     equations. Where there are more contacts than the grains can obey, the steps lead to the least elastic energy.
 
-    overlap: at rest of two of grain_radius. Returns positions (N, 3), pairs (M, 2) of contacts, and how much deeper
+    overlap, kind: as of equilibrium_overlaps(). Returns positions (N, 3), pairs (M, 2) of contacts, and how much deeper
     each (M,) is than at rest, in equilibrium overlaps."""
     moved = position.copy()
     for move in progress(range(MOST_MOVES + 1), "bringing contacts to rest", MOST_MOVES + 1):
         pairs = np.unique(np.sort(np.concatenate([pairs, touching(moved, radius)]), axis=1), axis=0)
-        depth = equilibrium_overlaps(radius, pairs, grain_radius, overlap)
+        depth = equilibrium_overlaps(radius, pairs, grain_radius, overlap, kind)
         missing = -surface_gaps(moved, radius, pairs) - depth
         deviation = missing / depth
         if move == MOST_MOVES or np.abs(deviation).max(initial=0.0) < AT_REST:
@@ -189,21 +216,22 @@ def at_rest(position, radius, pairs, grain_radius, overlap):
         separation = moved[pairs[:, 0]] - moved[pairs[:, 1]]
         normal = separation / np.linalg.norm(separation, axis=1)[:, None]
         # k ~ a_0 ~ R^(2/3), as depth^2 (packing.touching_distance)
-        moved = moved + _smallest_motion(normal, pairs, missing, depth / overlap, len(radius))
+        moved = moved + _smallest_motion(normal, pairs, missing, depth / np.max(overlap), len(radius))
 
 
 def brought_to_rest(packing, grain_radius, overlap, pairs=None):
     """The packing with its contacts at rest, and how far the farthest grain was moved (largestMotion [m]) among its
-    parameters. pairs (M, 2): its contacts, if not those that touch; overlap: at rest of two of grain_radius [m].
-    Raises PackingError where one stays deeper than MOST_PRESSED or comes apart."""
+    parameters. pairs (M, 2): its contacts, if not those that touch; overlap: as of equilibrium_overlaps(). Raises
+    PackingError where one stays deeper than MOST_PRESSED or comes apart."""
     pairs = contacts(packing) if pairs is None else pairs
-    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap)
+    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap, packing.kind)
     if deviation.min(initial=0.0) <= -1.0 or deviation.max(initial=0.0) >= MOST_PRESSED - 1:
         worst = deviation[np.abs(deviation).argmax()]
         must = f"must be at most {MOST_PRESSED:g}: a looser state"
         raise PackingError(f"contacts cannot come to rest together: one overlaps by {1 + worst:.3g}; {must}")
     motion = float(np.linalg.norm(position - packing.position, axis=1).max())
-    about = dict(packing.parameters, grainRadius=grain_radius, overlap=overlap, largestMotion=motion)
+    about = dict(packing.parameters, grainRadius=grain_radius, largestMotion=motion)
+    about |= {"overlap": float(np.reshape(overlap, -1)[0])}
     return replace(packing, position=position, parameters=about)
 
 
@@ -221,11 +249,13 @@ def _smallest_motion(normal, pairs, change, weight, grains):
 
 
 def save(path, packing):
-    """Write a packing as .npz: position (N, 3), radius (N,) in m, seed, parameters (a JSON text); beside them, for
-    whoever reads the file, gyration_radius and characteristic_radius [m]."""
+    """Write a packing as .npz: position (N, 3), radius (N,) in m, of several materials the number of each grain's,
+    material (N,), seed, parameters (a JSON text); beside them, for whoever reads the file, gyration_radius and
+    characteristic_radius [m]."""
     about = {"seed": packing.seed, "parameters": json.dumps(packing.parameters)}
     sizes = {"gyration_radius": gyration_radius(packing), "characteristic_radius": characteristic_radius(packing)}
-    write_file(path, npz(position=packing.position, radius=packing.radius, **about, **sizes))
+    kind = {} if packing.kind is None else {"material": packing.kind}
+    write_file(path, npz(position=packing.position, radius=packing.radius, **kind, **about, **sizes))
 
 
 def is_packing(path):
@@ -240,26 +270,32 @@ def load(path):
     """Read a packing that save() wrote; raises PackingError when it is none."""
     try:
         spheres, about = read_quantities(path, SPHERES, FORMAT), read_arrays(path, ("seed",), texts=("parameters",))
-        return Packing(**spheres, seed=int(about["seed"]), parameters=dict(json.loads(about["parameters"])))
+        parameters, kind = dict(json.loads(about["parameters"])), spheres.pop("material", None)
+        if kind is not None and not 0 <= kind.min() <= kind.max() < len(parameters.get("materials", ())):
+            raise ValueError("'material' must number its materials")
+        return Packing(**spheres, seed=int(about["seed"]), parameters=parameters, kind=kind)
     except (RunFolderError, ValueError, TypeError) as error:
         reason = one_line(error).removeprefix(f"{path}: ")
         must = "must be an .npz with position, radius, seed, parameters, as make_packing.py writes it"
         raise PackingError(f"{path}: not a packing ({reason}); {must}") from None
 
 
-def packing_from_file(path, grain_radius, overlap, planar=False, grains=None):
+def packing_from_file(path, grains, overlap, planar=False):
     """The packing in a file, with its centre of mass at the origin and the sum of its grains among its parameters.
 
-    grain_radius, overlap, grains (with the attributes OF_CONTACTS): of the run; planar: whether all must lie in the
-    plane z = 0. Raises PackingError for other grains."""
+    grains: materials.GrainParameters of the run; overlap: of two of its grains at rest [m]; planar: whether all must
+    lie in the plane z = 0. Raises PackingError for other grains."""
     packing = load(path)
     if packing.grains < 2:
         raise PackingError(f"{path}: holds {packing.grains} grains; must be N >= 2")
-    _require_material(path, packing, grain_radius, overlap, grains)
-    _require_shallow(path, packing, grain_radius, overlap)
-    if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grain_radius:
+    if packing.kind is not None:
+        _require_materials(path, packing, grains)
+    elif len(grains.material_names) == 1:  # of two, the grains get their materials, and come to rest with these
+        _require_material(path, packing, grains, overlap)
+        _require_shallow(path, packing, grains.grainRadius, overlap)
+    if planar and np.abs(packing.position[:, 2]).max() > 1e-9 * grains.grainRadius:
         raise PackingError(f"{path}: grains lie beside the plane z = 0; must all be in it with planar = 1")
-    found = moved(packing, (centred(packing.position, packing.radius) - packing.position)[0])
+    found = moved(packing, (centred(packing.position, packing.radius, packing.density) - packing.position)[0])
     return replace(found, parameters={**packing.parameters, SUM: _sum(packing)})
 
 
@@ -277,20 +313,32 @@ def _sum_as_written(path, _when):
 
 
 def _sum(packing):
-    return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes()).hexdigest()
+    kind = b"" if packing.kind is None else packing.kind.astype(np.int32).tobytes()
+    return hashlib.sha256(packing.position.tobytes() + packing.radius.tobytes() + kind).hexdigest()
 
 
-def _require_material(path, packing, grain_radius, overlap, grains):
+def _require_materials(path, packing, grains):
+    made_of, each = packing.parameters["materials"], grains.of_each()
+    alike = len(each) == len(made_of) and all(
+        same(made[name], getattr(own, name)) for made, own in zip(made_of, each) for name in OF_CONTACTS
+    )
+    if not alike:
+        names = ",".join(material["name"] for material in made_of)
+        raise PackingError(f"{path}: of grains of {names}, not {grains.material}; must be of the run's materials")
+
+
+def _require_material(path, packing, grains, overlap):
     """Contacts of other grains would pull or press from the start on. Loose cpe packings are meant (initialOverlap)."""
     stored = {"grainRadius": float(np.median(packing.radius)), **packing.parameters}
-    wanted = {name: (getattr(grains, name, None), 1e-6) for name in OF_CONTACTS}
-    wanted["grainRadius"] = grain_radius, 1e-6
+    wanted = {name: (getattr(grains, name), 1e-6) for name in OF_CONTACTS}
+    if np.ptp(packing.radius) == 0:  # of unlike ones a run's grainRadius is but the unit
+        wanted["grainRadius"] = grains.grainRadius, 1e-6
     if stored.get("packing") != "cpe":
-        wanted["overlap"] = overlap, AT_REST
+        wanted["overlap"] = overlap * np.cbrt(stored["grainRadius"] / grains.grainRadius), AT_REST
     for name, (value, tolerance) in wanted.items():
-        if None in (stored.get(name), value) or np.isclose(stored[name], value, rtol=tolerance, atol=0):
+        if stored.get(name) is None or np.isclose(stored[name], value, rtol=tolerance, atol=0):
             continue
-        must = "must be a packing of the run's grains (one material for all)"
+        must = "must be a packing of the run's grains"
         raise PackingError(f"{path}: made of grains with {name} = {stored[name]:.3g}, not {value:.3g}; {must}")
 
 

@@ -57,7 +57,6 @@ def offset_pair(target, projectile, velocity, impact):
 
     target, projectile: around their centres of mass; velocity: of the projectile relative to the target, along -x
     [m/s]; impact: offset of the centres in y over r_c,tar + r_c,pro (A22 eq 27)."""
-    mass = np.array([(packing.radius**3).sum() for packing in (target, projectile)])
     largest = max(target.radius.max(), projectile.radius.max())
     offset = impact * (characteristic_radius(target) + characteristic_radius(projectile))
     ahead = extent(target) + extent(projectile) + 2 * largest
@@ -65,10 +64,16 @@ def offset_pair(target, projectile, velocity, impact):
     until_touch = first_touch(target, far, np.array([-1.0, 0.0, 0.0]))
     if until_touch is not None:
         ahead += START_GAP * largest - until_touch
-    apart, approach = np.array([ahead, offset, 0.0]), np.array([-velocity, 0.0, 0.0])
-    of_target, of_projectile = -mass[1] / mass.sum(), mass[0] / mass.sum()
-    pair = [moved(target, of_target * apart), moved(projectile, of_projectile * apart)]
-    return pair, [of_target * approach, of_projectile * approach]
+    shifts = velocities_of([target, projectile], np.array([ahead, offset, 0.0]))
+    pair = [moved(packing, shift) for packing, shift in zip((target, projectile), shifts)]
+    return pair, velocities_of(pair, np.array([-velocity, 0.0, 0.0]))
+
+
+def velocities_of(pair, relative):
+    """Velocities (3,) of target and projectile in the frame of their common centre of mass, of the projectile's
+    relative (3,) to the target; likewise of places."""
+    mass = np.array([(packing.radius**3 * packing.density).sum() for packing in pair])
+    return [-mass[1] / mass.sum() * relative, mass[0] / mass.sum() * relative]
 
 
 def smallest_edge(packing):

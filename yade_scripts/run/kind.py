@@ -30,7 +30,7 @@ class Ending(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A run that is ready to be built in YADE. States are those of contact_law.snapshot(), with `aggregate`.
+    """A run that is ready to be built in YADE. States are those of contact_law.snapshot(), with `grains`.
 
     control(recorder, state) is called after each sample, may change the scene, and is true when the run is at its end
     before `duration` is over; it must follow from history, state and scene alone, so that a run resumes."""
@@ -38,7 +38,7 @@ class Scene:
     parameters: Any  # of the kind, complete, with a duration and a number as stepFraction
     constants: Mapping  # of a contact, as run.scene.pair_constants() gives them
     derived: Mapping  # what run.json has beside the grains and constants
-    aggregate: np.ndarray  # (N,) int, the aggregate of each grain
+    grains: Mapping  # arrays (N,) that every state has: aggregate, of several materials material and mass
     build: Callable[[], None]  # makes the bodies (and the cell)
     series: Callable[[Mapping], Mapping[str, Any]]  # state -> {name: value} of the kind's own series
     law: Mapping = field(default_factory=dict)  # attributes of the contact law, in the engine and in the functors

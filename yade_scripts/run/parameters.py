@@ -14,6 +14,7 @@ from yade_scripts.time_step import AUTO, STABLE_STEP
 
 # In YADE libgomp counts them: with OMP_PROC_BIND it has bound this process to the first.
 CORES = CDLL("libgomp.so.1").omp_get_num_procs() if "yade" in sys.modules else len(os.sched_getaffinity(0))
+SPRINGS = ("sliding", "rolling", "twisting")
 TOLERANCE = 1e-4  # with stepFraction=auto
 STEP = Check(
     f"> 0 and <= {STABLE_STEP}, less in dense packings and with drag, or {AUTO}", lambda x: 0 < x <= STABLE_STEP
@@ -40,6 +41,9 @@ class RunParameters(Parameters):
         one_of(["held", "cut"]),
         "displacements of contacts at their limits: held there (W07), or their springs cut and new ones formed (S17)",
     )
+    sliding: int = parameter(1, SWITCH, "0: contacts do not resist sliding")
+    rolling: int = parameter(1, SWITCH, "0: contacts do not resist rolling")
+    twisting: int = parameter(1, SWITCH, "0: contacts do not resist twisting")
     slidingStiffnessFactor: float = parameter(
         1.0, POSITIVE, "stiffness of sliding k_s over 8 a0 G*: 1 (W07, A22), or 2 (S17 eqs 11 and 12 as printed)", "1"
     )
@@ -81,6 +85,11 @@ class RunParameters(Parameters):
         """The default tolerance with stepFraction=auto."""
         chosen = self.stepFraction == AUTO and self.tolerance is None
         return super(RunParameters, self.changed(tolerance=TOLERANCE) if chosen else self).filled_in()
+
+    @property
+    def has_all_springs(self):
+        """Whether contacts resist sliding, rolling and twisting."""
+        return all(getattr(self, name) for name in SPRINGS)
 
     def with_threads(self, of_yade):
         """The same with the number of threads; of_yade: those that YADE was started with."""

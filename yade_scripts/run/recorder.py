@@ -106,7 +106,7 @@ class Recorder:
         self.folder.write_history({**series, **{name: series[name].astype(int) for name in whole}})
 
     def _sample(self):
-        state = {**contact_law.snapshot(), "aggregate": self.scene.aggregate}
+        state = {**contact_law.snapshot(), **self.scene.grains}
         booked = dict(Omega().energy.items())
         energies = {channel: booked.get(channel, 0.0) for channel in CHANNELS}  # none of it so far: no entry
         self._require_sound(state, energies)

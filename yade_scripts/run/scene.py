@@ -8,7 +8,9 @@ from yade import utils
 from yade.wrapper import Omega
 
 import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
+from yade_scripts.materials import derived_materials
 from yade_scripts.run import recorder as sampling
+from yade_scripts.run.parameters import SPRINGS
 
 # How far, in grain radii, a grain may move before the collider looks for neighbours again: less makes it look
 # more often, more makes every step test more pairs that don't touch. Measured at 6,400 grains, a step costs
@@ -24,8 +26,13 @@ COLOURS = ((0.35, 0.60, 0.85), (0.90, 0.60, 0.25))
 
 
 def material_of(grains):
-    """The plugin's material of materials.GrainParameters."""
-    return yade.JKRMat(label=grains.material, **{name: getattr(grains, name) for name in OF_MATERIAL})
+    """The plugin's material of materials.GrainParameters, of two the first."""
+    return yade.JKRMat(label=grains.material_names[0], **{name: getattr(grains, name) for name in OF_MATERIAL})
+
+
+def materials_of(grains):
+    """The plugin's materials of materials.GrainParameters, in a list."""
+    return [material_of(own) for own in grains.of_each()]
 
 
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
@@ -51,15 +58,16 @@ def _functor(grains, damping):
     return yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, slidingStiffnessFactor=factor)
 
 
-def add_bodies(packings, velocities, material, planar=False):
+def add_bodies(packings, velocities, materials, planar=False):
     """Make bodies of the packings, each with its velocity (3,) [m/s]; planar: that never leave their plane z = 0."""
     omega = Omega()
-    material_id = omega.materials.append(material)
+    ids = [omega.materials.append(material) for material in materials]
     for number, (packing, velocity) in enumerate(zip(packings, velocities)):
         colour = COLOURS[number % len(COLOURS)]
+        kinds = packing.grains * [0] if packing.kind is None else packing.kind.tolist()
         bodies = [
-            utils.sphere(centre, radius, material=material_id, color=colour)
-            for centre, radius in zip(packing.position.tolist(), packing.radius.tolist())
+            utils.sphere(centre, radius, material=ids[kind], color=colour)
+            for centre, radius, kind in zip(packing.position.tolist(), packing.radius.tolist(), kinds)
         ]
         for body in bodies:
             body.state.vel = velocity
@@ -86,11 +94,12 @@ def start(scene, schedule, recorder):
     sampling.current = recorder
     runner = yade.PyRunner(command=sampling.COMMAND, iterPeriod=schedule.interval, initRun=True)
     law = {"slidingStiffnessFactor": parameters.slidingStiffnessFactor, **scene.law}
+    contacts = {"limit": parameters.limit, **{name: bool(getattr(parameters, name)) for name in SPRINGS}}
     if parameters.engine == "functors":
-        omega.engines = functor_engines(parameters.grainRadius, runner, parameters.limit, **law)
+        omega.engines = functor_engines(parameters.grainRadius, runner, contacts, **law)
         return schedule.steps + 1, runner, lambda: None
     runner.iterPeriod = 1
-    fused = yade.JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, limit=parameters.limit, **law)
+    fused = yade.JKRWadaEngine(subSteps=schedule.interval, threads=parameters.threads, **contacts, **law)
     omega.dt *= schedule.interval
     omega.engines = [fused, runner]
     return schedule.samples, runner, lambda: (fused.prepare(), recorder.sample())
@@ -107,8 +116,9 @@ def resume(scene, schedule, recorder, saved):
     return schedule.samples, engines[-1], lambda: None
 
 
-def functor_engines(grain_radius, runner, limit="held", **law):
-    """YADE's own engines with the plugin's law, its limit rule and attributes; runner comes last."""
+def functor_engines(grain_radius, runner, contacts={}, **law):
+    """YADE's own engines with the plugin's law: attributes of its Law2 functor, and of the others; runner comes
+    last."""
     return [
         yade.ForceResetter(),
         yade.InsertionSortCollider(
@@ -117,7 +127,7 @@ def functor_engines(grain_radius, runner, limit="held", **law):
         yade.InteractionLoop(
             [yade.Ig2_Sphere_Sphere_ScGeom(), yade.Ig2_Wall_Sphere_ScGeom()],
             [yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(**law)],
-            [yade.Law2_ScGeom_JKRWadaPhys_JKRWada(limit=limit)],
+            [yade.Law2_ScGeom_JKRWadaPhys_JKRWada(**contacts)],
         ),
         yade.NewtonIntegrator(damping=0),
         runner,
@@ -131,6 +141,7 @@ def derived(scene, schedule):
         **{name: getattr(grains, name) for name in (*OF_MATERIAL, "grainRadius")},
         "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
         **{name: constants[name] for name in OF_CONTACT},
+        **derived_materials(grains),
         **({name: constants["bond"][name] for name in OF_BOND} if constants["bond"] else {}),
         "timeStep": scene.time_step,
         "steps": schedule.steps,
