@@ -48,12 +48,13 @@ class Outcome:
     fragments: int  # their number
     why_undecided: str | None = None  # in a few words
     mass_on_plate: float | None = None  # the fraction that sticks to a plate (plate.py)
+    restitution_tangential: float | None = None  # along a plate that was hit at a slant
 
     def if_decided(self, why):
         """The same; undecided where there is a reason for it."""
         if why is None:
             return self
-        return replace(self, kind=UNDECIDED, restitution=None, why_undecided=why)
+        return replace(self, kind=UNDECIDED, restitution=None, restitution_tangential=None, why_undecided=why)
 
 
 def sticks(largest, target):

@@ -9,8 +9,8 @@ fraction of their mass that is connected with the plate at the end, and f_off th
     bouncing       f_off >= 0.9, whatever small part it has left on the plate
     fragmentation  everything else: what sticks then is the mass transfer of laboratories, f_on
 
-The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the
-heaviest piece along that of the aggregate at the start, over the latter.
+The coefficient of restitution is 0 for sticking; for bouncing minus the velocity of the centre of mass of the heaviest
+piece along the plate's normal over that of the aggregate at the start; restitution_tangential likewise along the plate.
 
 The plate stands as one more grain among the others, of aggregate 1: a sphere so large that it is flat where the
 grains are. Pieces that may still meet it, and cuts between it and what lies on it, are then found as those of two
@@ -34,6 +34,7 @@ from .outcome import BOUNCING, FRAGMENTATION, NEVER_MET, ROUNDING, STICKING, Out
 
 # Radius of the sphere that stands for the plate, over the largest distance of a grain from the point of the plate
 # below the grains.
+SLANTING = 1e-6  # of the velocity: motion along a plate that is more than rounding
 FLAT = 1e3
 MOST = 0.9  # of the mass, on the plate or in the piece that has bounced
 
@@ -103,11 +104,15 @@ def plate_outcome(start, end, met):
     off = np.where(np.arange(len(fractions)) == labels[-1], 0.0, fractions)
     heaviest = int(np.argmax(off))
     kind = classify_on_plate(on, off[heaviest]) if met else NEVER_MET
-    ratio = 0.0 if kind == STICKING else None
+    ratio, tangential = 0.0 if kind == STICKING else None, None
     if kind == BOUNCING:
         piece, own = (labels == heaviest) & counted, counted[:-1]
-        before = mean_velocity(start["velocity"], mass[:-1], own)
-        ratio = restitution(before, mean_velocity(state["velocity"], mass, piece))
+        before, after = mean_velocity(start["velocity"], mass[:-1], own), mean_velocity(state["velocity"], mass, piece)
+        across = np.arange(3) == int(start["plane_axis"][0])
+        ratio = restitution(before * across, after * across)
+        along = before * ~across
+        if np.linalg.norm(along) > SLANTING * np.linalg.norm(before):
+            tangential = float(after @ along / (along @ along))
     f1, f2 = sorted([*map(float, fractions), 0.0], reverse=True)[:2]
     return Outcome(
         kind,
@@ -117,6 +122,7 @@ def plate_outcome(start, end, met):
         float(of_grains[labels == labels[-1]].sum() / of_grains.sum()),
         int((sizes > 0).sum()),
         mass_on_plate=on,
+        restitution_tangential=tangential,
     )
 
 

@@ -32,7 +32,8 @@ OF_COLLISION = (
     Column("t_max", "s", "its time"),
     Column("t_max_error", "s", "its error"),
     Column("maximum_inside", "", "False: d_max is only a bound, at an end of the record", "O"),
-    Column("restitution", "1", "coefficient of restitution (measures.outcome)"),
+    Column("restitution", "1", "coefficient of restitution (measures.outcome), of a plate along its normal"),
+    Column("restitution_tangential", "1", "velocity along a plate that was hit at a slant, over that before"),
     Column("outcome", "", "sticking, bouncing, fragmentation, never met, undecided (measures.outcome, .plate)", "O"),
     Column("why_undecided", "", "why an outcome may still become another one", "O"),
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O"),
@@ -114,7 +115,15 @@ def _collision(run):
         numbers.update(d_max=float(maximum.length), t_max=float(maximum.time), maximum_inside=maximum.inside)
         if maximum.inside:
             numbers.update(d_max_error=float(maximum.length_error), t_max_error=float(maximum.time_error))
-    names = ("restitution", "why_undecided", "largest_fragment", "fragments", "growth_efficiency", "mass_on_plate")
+    names = (
+        "restitution",
+        "restitution_tangential",
+        "why_undecided",
+        "largest_fragment",
+        "fragments",
+        "growth_efficiency",
+        "mass_on_plate",
+    )
     numbers.update({name: getattr(outcome, name) for name in names})
     if outcome.kind == NEVER_MET:  # no collision whose growth a mean could have
         numbers["growth_efficiency"] = None

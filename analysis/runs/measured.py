@@ -55,8 +55,9 @@ def outcome_of_run(run):
             found = collision_outcome(*at_start, end.velocity, end.contact_pairs, met(run))
     except ValueError as error:
         raise RunFolderError(f"{run.path / STATES_FOLDER}: {error}") from None
-    # The run has found that they never touch on their straight ways (which format 1 does not say).
-    passes = run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run)
+    # The run has found that they never touch on their straight ways (which format 1 does not say), if none spins.
+    spins = any(run.parameters.get(name) for name in ("spin", "projectileSpin"))
+    passes = run.record["format"] > 1 and "firstTouch" not in run.derived and not met(run) and not spins
     if passes or not all(name in run.derived for name in CONSTANTS):
         return found
     touch = time_of_touch(run)

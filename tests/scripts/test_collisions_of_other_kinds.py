@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 from running import completed, read_arrays, read_json
+from scipy.stats import kstest
 
 from analysis.runs.folder import open_run
 from analysis.runs.ledger import closure_history
 from analysis.runs.measured import outcome_of_run
+from analysis.theory import ICE, collide_pair, pair_constants
+from yade_scripts.experiments.collision import CollisionParameters
 
 TINY = ("packing=bpca", "grains=40", "velocity=40", "stepFraction=0.2", "threads=1")
 
@@ -57,3 +60,52 @@ def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
     assert 0.2 < np.mean(passed) < 0.8
     errors = [np.abs(closure_history(history)[passed]).max() for history in (one, other)]
     assert 0 < errors[0] < 0.3 * errors[1]
+
+
+# ---- single grains, spins, slanting plates, offsets at random ----
+
+SMOOTH = ("sliding=0", "rolling=0", "twisting=0")
+
+
+def test_a_sphere_on_a_slanting_way_leaves_a_plate_as_the_closed_form_says(tmp_path):
+    """Its normal motion is that of the theory at v cos(angle); its motion along a smooth plate stays."""
+    completed(tmp_path, "packing=bpca", "grains=1", "target=wall", "impactAngle=60", "velocity=40", *SMOOTH)
+    found = outcome_of_run(open_run(tmp_path / "run"))
+    theory = collide_pair(20.0, pair_constants(ICE, 1e-7, ICE, np.inf))
+    assert found.kind == "bouncing" and found.restitution == pytest.approx(theory.restitution, rel=2e-3)
+    assert found.restitution_tangential == pytest.approx(1.0, rel=1e-12)
+
+
+def test_spins_are_in_the_energy_and_angular_momentum_is_kept(tmp_path):
+    spins = ("spin=3e7", "spinAxis=x", "projectileSpin=-2e7", "projectileSpinAxis=y")
+    hit = ("packing=bcca", "grains=40", "velocity=6", "impact=0.5", "threads=1", "duration=1.2e-7", "states=3")
+    _, history = completed(tmp_path, *hit, *spins)
+    run = open_run(tmp_path / "run")
+    first, last = run.start, run.last
+    mass, inertia = 4 / 3 * np.pi * 1e3 * first.radius**3, 8 / 15 * np.pi * 1e3 * first.radius**5
+
+    def angular_momentum(state):
+        orbital = mass[:, None] * np.cross(state.position, state.velocity)
+        return (orbital + inertia[:, None] * state.angular_velocity).sum(axis=0)
+
+    scale = np.linalg.norm(mass[:, None] * np.cross(first.position, first.velocity), axis=1).sum()
+    assert angular_momentum(last) == pytest.approx(angular_momentum(first), abs=1e-10 * scale)
+    wanted = 0.5 * (mass.sum() / 4) * 6**2
+    for number, (axis, rate) in enumerate(((0, 3e7), (1, -2e7))):
+        own = first.aggregate == number
+        place = np.delete(first.position[own] - first.position[own].mean(axis=0), axis, axis=1)
+        wanted += 0.5 * rate**2 * (mass[own] @ (place**2).sum(axis=1) + inertia[own].sum())
+        assert np.all(first.angular_velocity[own][:, axis] == rate)
+    assert history["kinetic"][0] == pytest.approx(wanted, rel=1e-9) and closure_history(history)[-1] < 1e-3
+
+
+def test_a_single_grain_hits_an_aggregate(tmp_path):
+    about, history = completed(tmp_path, "packing=bpca", "grains=60", "projectileGrains=1", "velocity=1", "threads=1")
+    assert about["derived"]["projectileGrains"] == 1 and about["outcome"] == "sticking"
+    assert about["derived"]["projectileCharacteristicRadius"] == 1e-7 and history["contacts_between"][-1] >= 1
+
+
+def test_random_offsets_are_those_of_the_seed_and_as_often_as_collisions_have_them():
+    drawn = [CollisionParameters.parse({"impact": "random", "seed": seed}).impact for seed in range(400)]
+    assert drawn[7] == CollisionParameters.parse({"impact": "random", "seed": 7}).impact
+    assert kstest(np.square(drawn), "uniform").pvalue > 0.01

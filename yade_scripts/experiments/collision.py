@@ -4,7 +4,7 @@ In a collision with a plate (target=wall) the plate is at rest at x = 0, and the
 """
 
 from dataclasses import dataclass, replace
-from math import ceil, sqrt
+from math import ceil, cos, radians, sin, sqrt
 
 import numpy as np
 
@@ -18,13 +18,15 @@ from yade_scripts import packings, time_step
 from yade_scripts.materials import derived_materials, pair_constants, require_small_contacts
 from yade_scripts.packings import aggregate
 from yade_scripts.packings.aggregate import MOST_GRAINS, NAMED_PACKING, AggregateParameters, make
-from yade_scripts.packings.packing import SUM, arrays_of_grains, sum_of_file
+from yade_scripts.packings.packing import SUM, arrays_of_grains, random_stream, sum_of_file
 from yade_scripts.packings.placing import START_GAP, first_touch, offset_pair, velocities_of
 from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Usual, between, one_of, parameter
 from yade_scripts.run.kind import Ending, Estimate, Kind, Scene
 from yade_scripts.run.parameters import RunParameters
 
 AGGREGATE, WALL = "aggregate", "wall"  # targets
+RANDOM = "random"
+SPIN = Check("any number, positive counterclockwise about the axis", lambda x: True)
 AXIS = 0  # across a plate
 WAY = 4  # radii of the larger aggregate that fluffy ones move at `velocity` in the default duration
 # At 3e3 m/s BCCA aggregates of ice broke down with the default step, at 2e3 they did not.
@@ -42,18 +44,25 @@ class CollisionParameters(AggregateParameters, RunParameters):
     """The collision."""
 
     velocity: float = parameter(10**0.5, POSITIVE, "relative velocity of the aggregates", "m/s", usual=VELOCITY)
-    target: str = parameter(
-        AGGREGATE, one_of([AGGREGATE, WALL]), "what meets one: another, or a plate of its material, at right angles"
-    )
-    impact: float = parameter(
+    target: str = parameter(AGGREGATE, one_of([AGGREGATE, WALL]), "what meets one: another, or a plate of its material")
+    impact: float | str = parameter(
         0.0,
         between(0, 1),
-        "impact parameter B_off over the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii)",
+        "impact parameter B_off over the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii); "
+        f"{RANDOM}: the seed's, its square uniform, as collisions have it",
         "1",
+        word=RANDOM,
+    )
+    impactAngle: float | None = parameter(
+        None, Check(">= 0 and below 90", lambda x: 0 <= x < 90), "target = wall: from its normal to the way (0)", "deg"
     )
     projectileGrains: int | None = parameter(
-        None, between(2, MOST_GRAINS), "grains of the projectile, with packing = bcca or bpca (as many as grains)"
+        None, between(1, MOST_GRAINS), "grains of the projectile, with packing = bcca or bpca (as many as grains)"
     )
+    spin: float = parameter(0.0, SPIN, "of the target, about its centre, or of what meets a plate", "rad/s")
+    projectileSpin: float = parameter(0.0, SPIN, "of the projectile", "rad/s")
+    spinAxis: str = parameter("z", one_of("xyz"), "about which it spins, z being across way and offset")
+    projectileSpinAxis: str = parameter("z", one_of("xyz"), "likewise of the projectile")
     projectileFile: str | None = parameter(
         None, NAMED_PACKING, "the projectile's packing (file: the same, not turned: each grain meets its own image)"
     )
@@ -82,9 +91,10 @@ class CollisionParameters(AggregateParameters, RunParameters):
         ("projectileFile", "packing", ["file"]),
         ("impactStepFraction", "engine", ["fused"]),
         *((name, "target", [AGGREGATE]) for name in ("projectileGrains", "projectileFile", "impact", "neck")),
-        *(
-            (name, "neck", [0]) for name in ("sizes", "initialOverlap", "layout")
-        ),  # bonds start at rest, of equal grains
+        *((name, "target", [AGGREGATE]) for name in ("projectileSpin", "projectileSpinAxis")),
+        ("impactAngle", "target", [WALL]),
+        # bonds start at rest, of equal grains
+        *((name, "neck", [0]) for name in ("sizes", "initialOverlap", "layout")),
     ]
 
     def filled_in(self):
@@ -98,9 +108,19 @@ class CollisionParameters(AggregateParameters, RunParameters):
             aggregate.require_growable(found.packing, "projectileGrains", found.projectileGrains)
         if found.neck and found.packing != "file":  # a file may name its material
             _require_sintered(found.neck, pair_constants(found))
+        if found.planar and {found.spinAxis, found.projectileSpinAxis} != {"z"}:
+            raise ParameterError("spinAxis: given with planar = 1; must be z")
+        if found.impact == RANDOM:
+            found = found.changed(impact=float(np.sqrt(random_stream(found.seed, 0, 3).random())))
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
         return found
+
+    @property
+    def spins(self):
+        """Angular velocities (3,) [rad/s] of target and projectile, or of the one that meets a plate."""
+        of = ((self.spin, self.spinAxis), (self.projectileSpin, self.projectileSpinAxis))
+        return [rate * np.eye(3)["xyz".index(axis)] for rate, axis in (of[:1] if self.target == WALL else of)]
 
     def of_projectile(self):
         """The parameters from which the projectile is made."""
@@ -189,7 +209,7 @@ def prepare(parameters, threads):
     materials = yade_scene.materials_of(parameters)
 
     def build():
-        yade_scene.add_bodies(pair, velocities, materials, bool(parameters.planar))
+        yade_scene.add_bodies(pair, velocities, materials, bool(parameters.planar), parameters.spins)
         if parameters.target == WALL:
             yade_scene.add_plane(AXIS, 0.0, materials[0])
 
@@ -216,8 +236,8 @@ def place(parameters, overlap):
         if parameters.packing != "cpe":
             parameters = _with_size(parameters, [packing])
         gap = START_GAP * packing.radius.max() - (packing.position[:, AXIS] - packing.radius).min()
-        placed = packings.moved(packing, (gap, 0.0, 0.0))
-        return parameters, [placed], [np.array([-parameters.velocity, 0.0, 0.0])]
+        placed, angle = packings.moved(packing, (gap, 0.0, 0.0)), radians(parameters.impactAngle or 0.0)
+        return parameters, [placed], [parameters.velocity * np.array([-cos(angle), sin(angle), 0.0])]
     pair = [make(parameters, overlap, 0), make(parameters.of_projectile(), overlap, 1)]
     if parameters.packing == "cpe":
         # A24 section 3: centres at -/+(R_agg + r) in x; offset in y as in A22 eq 27
@@ -237,7 +257,7 @@ def _with_size(parameters, pair):
         given = f"given with grains of unlike size in {parameters.file}"
         raise ParameterError(f"neck = {parameters.neck:g}: {given}; must be 0")
     extents = [packings.extent(packing) / parameters.grainRadius for packing in pair]
-    radius, dimensions = max(extents), 2 if parameters.planar else 3
+    radius, dimensions = max(extents) or 1.0, 2 if parameters.planar else 3  # 1: of single grains
     grains = pair[int(np.argmax(extents))].radius / parameters.grainRadius
     filling = float((grains**dimensions).sum() / radius**dimensions)
     return parameters.changed(radius=radius, filling=filling, grains=pair[0].grains)
@@ -259,9 +279,9 @@ def _sizes(aggregate_radius, pair, parameters):
 
 
 def _time_of_touch(parameters, pair, velocities, bond):
-    """Time [s] until grains first touch, sintered ones shrunk, or None."""
+    """Time [s] until grains first touch, sintered ones shrunk, as if none spun, or None."""
     if parameters.target == WALL:
-        return float((pair[0].position[:, AXIS] - pair[0].radius).min() / parameters.velocity)
+        return float((pair[0].position[:, AXIS] - pair[0].radius).min() / -velocities[0][AXIS])
     if bond:
         pair = [replace(packing, radius=np.full(packing.grains, bond["shrunkRadius"])) for packing in pair]
     return first_touch(*pair, velocities[1] - velocities[0])

@@ -57,7 +57,9 @@ class AggregateParameters(GrainParameters):
     )
     radius: float | None = parameter(None, POSITIVE, "radius of a cpe aggregate (20, without grains)", "grain radii")
     grains: int | None = parameter(
-        None, between(2, MOST_GRAINS), f"grains of an aggregate, instead of radius (bcca, bpca: {GRAINS_GROWN})"
+        None,
+        between(1, MOST_GRAINS),
+        f"grains of an aggregate, instead of radius (bcca, bpca: {GRAINS_GROWN}; 1: a single grain)",
     )
     planar: int = parameter(0, SWITCH, "1: grains confined to a plane")
     file: str | None = parameter(None, NAMED_PACKING, "packing of packing = file")
@@ -93,7 +95,7 @@ class AggregateParameters(GrainParameters):
 
     ONLY_WITH = [
         *((name, "packing", ["cpe"]) for name in ("filling", "radius", "removeLooseGrains", "initialOverlap")),
-        *((name, "packing", MADE) for name in ("grains", "seed")),
+        ("grains", "packing", MADE),
         ("file", "packing", ["file"]),
         ("planar", "packing", ["cpe", "bcca", "file"]),
         ("sizes", "packing", MOST_GROWN),
@@ -129,6 +131,8 @@ class AggregateParameters(GrainParameters):
         dimensions = 2 if self.planar else 3
         filling = 0.4 if self.filling is None else self.filling
         if self.grains is not None:
+            if self.grains < 2:
+                raise ParameterError(f"grains = {self.grains}: given with packing = cpe; must be 2 or more")
             if self.radius is not None:
                 raise ParameterError("radius and grains: both given; must be one of the two, beside filling")
             return self.changed(filling=filling, radius=(self.grains / filling) ** (1 / dimensions))

@@ -104,7 +104,10 @@ def gyration_radius(packing):
 
 
 def characteristic_radius(packing):
-    """r_c = (5/3)^(1/2) r_gyr [m] (Mukai et al. 1992; A22 section 2.4): of a homogeneous sphere its radius."""
+    """r_c = (5/3)^(1/2) r_gyr [m] (Mukai et al. 1992; A22 section 2.4): of a homogeneous sphere its radius. Of a single
+    grain it is the grain's."""
+    if packing.grains == 1:
+        return float(packing.radius[0])
     return sqrt(5.0 / 3.0) * gyration_radius(packing)
 
 

@@ -3,12 +3,14 @@
 import os
 from math import inf, pi
 
+import numpy as np
 import yade.wrapper as yade
 from yade import utils
 from yade.wrapper import Omega
 
 import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
 from yade_scripts.materials import derived_materials
+from yade_scripts.packings.packing import centred
 from yade_scripts.run import recorder as sampling
 from yade_scripts.run.parameters import SPRINGS
 
@@ -58,8 +60,9 @@ def _functor(grains, damping):
     return yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, slidingStiffnessFactor=factor)
 
 
-def add_bodies(packings, velocities, materials, planar=False):
-    """Make bodies of the packings, each with its velocity (3,) [m/s]; planar: that never leave their plane z = 0."""
+def add_bodies(packings, velocities, materials, planar=False, spins=None):
+    """Make bodies of the packings, each with its velocity (3,) [m/s] and spin (3,) [rad/s] about its centre of mass;
+    planar: that never leave their plane z = 0."""
     omega = Omega()
     ids = [omega.materials.append(material) for material in materials]
     for number, (packing, velocity) in enumerate(zip(packings, velocities)):
@@ -69,8 +72,10 @@ def add_bodies(packings, velocities, materials, planar=False):
             utils.sphere(centre, radius, material=ids[kind], color=colour)
             for centre, radius, kind in zip(packing.position.tolist(), packing.radius.tolist(), kinds)
         ]
-        for body in bodies:
-            body.state.vel = velocity
+        spin = np.zeros(3) if spins is None else spins[number]
+        turning = np.cross(spin, centred(packing.position, packing.radius, packing.density))
+        for body, own in zip(bodies, velocity + turning):
+            body.state.vel, body.state.angVel = own, spin
             body.state.blockedDOFs = "zXY" if planar else ""
         omega.bodies.append(bodies)
 
