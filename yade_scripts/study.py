@@ -1,6 +1,7 @@
 """Run a table to its end, however often it is stopped in between.
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, JOBS threads at once
+    python3 yade_scripts/study.py TABLE --longer 6e-6    go on with runs that ended undecided, to that duration [s]
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; runs nothing
     python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- --time=12:00:00]
                                                      what is left as job arrays of Slurm, JOBS tasks of each at once;
@@ -53,6 +54,7 @@ def parse_arguments(arguments):
     jobs = f"threads at once (default: one for each core, {CORES}); with --slurm tasks of an array (default: all)"
     parser.add_argument("-j", "--jobs", type=int, metavar="JOBS", help=jobs)
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
+    parser.add_argument("--longer", type=float, metavar="SECONDS", help="duration to which undecided runs go on")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
     parser.add_argument("--slurm", action="store_true", help="submit what is left; after --: options of sbatch")
     parser.add_argument("--dry-run", action="store_true", help="with --slurm: print the job scripts, submit nothing")
@@ -63,6 +65,8 @@ def parse_arguments(arguments):
         parser.error(f"-j = {options.jobs}: must be 1 or more")
     if (options.sbatch or options.dry_run) and not options.slurm:
         parser.error(f'{"--dry-run" if options.dry_run else options.sbatch[0]}: must be given with --slurm')
+    if options.longer is not None and not (options.longer > 0 and not options.slurm):
+        parser.error(f"--longer = {options.longer:g}: must be > 0, and without --slurm")
     if options.status and options.slurm:
         parser.error("--status: must be given without --slurm")
     return options
@@ -126,7 +130,7 @@ def main(arguments):
         if options.status and (place := place_of(table)) != Path.cwd():
             table = os.path.abspath(table)
             os.chdir(place)
-        study = Study(table, options.jobs or CORES)
+        study = Study(table, options.jobs or CORES, options.longer)
         if options.status:
             states, _ = study.states_with_queue()
             show(study.table(states) + study.undecided(states))

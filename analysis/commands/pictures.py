@@ -86,6 +86,8 @@ def _add_plot(commands):
     parser.add_argument(
         "--where", metavar="COLUMN=VALUE", type=_condition, action="append", default=[], help="draw these runs only"
     )
+    parser.add_argument("--over", metavar="COLUMN", default="", help="average over its values (impact)")
+    parser.add_argument("--bins", metavar="N", type=int, default=0, help="average in so many bins of the axis")
     parser.add_argument("--log", choices=("x", "y", "xy", "none"), help="logarithmic axes (default: x over a decade)")
     parser.add_argument("--out", metavar="FILE", type=with_ending(".png"), help="the PNG (default: WHAT-COLUMN.png)")
 
@@ -109,13 +111,13 @@ def plot(options):
 
     file = options.out or Path(f"{options.what}-{options.x}.png")
     where, logarithmic = dict(options.where), "" if options.log == "none" else options.log
-    structure = any("largest_" in name for name in (options.what, options.x, options.by, *where))
+    structure = any("largest_" in name for name in (options.what, options.x, options.by, options.over, *where))
     measured, problems = measure(options.runs, lambda run: row(run, structure))
     for problem in problems:
         complain(problem)
     if not measured:
         return FAILED
-    figure = plot(options.what, frame(measured), options.x, options.by, where, logarithmic)
+    figure = plot(options.what, frame(measured), options.x, options.by, where, logarithmic, options.over, options.bins)
     file.parent.mkdir(parents=True, exist_ok=True)
     with replacing(file) as out:
         figure.savefig(out, format="png", dpi=150)

@@ -8,7 +8,7 @@ import warnings
 
 import numpy as np
 
-from ..measures.fragments import fragment_labels, heaviest_fragment
+from ..measures.fragments import fragment_labels, grain_masses, heaviest_fragment
 from ..measures.outcome import NEVER_MET
 from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
 from ..measures.structure import mean_coordination
@@ -263,7 +263,7 @@ def _changes(run):
 def _largest(state):
     """{column: value} of the structure of a state's largest piece, by mass."""
     labels = fragment_labels(len(state.radius), state.contact_pairs)
-    largest = heaviest_fragment(labels, (state.radius / state.radius.max()) ** 3)
+    largest = heaviest_fragment(labels, grain_masses(vars(state)))
     own = np.flatnonzero(labels == largest)
     structure = structure_of(state.position, state.radius, [own], state.cell_size)
     contacts = state.contact_pairs[labels[state.contact_pairs[:, 0]] == largest]

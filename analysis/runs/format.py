@@ -181,13 +181,16 @@ RUN_KINDS = {kind.name: kind for kind in (COLLISION, COMPRESSION)}
 
 # Parameters in run.json that are words. A test compares the list with the scripts' own, as below.
 PARAMETER_WORDS = tuple(
-    "packing file projectileFile sizes sizesFile target boundary stretch material materials layout engine limit".split()
+    "packing file projectileFile sizes sizesFile target boundary stretch material materials layout engine limit "
+    "spinAxis projectileSpinAxis".split()
 )
 
 # Units of the parameters in run.json ("1": a ratio) that aren't numbers of things or words; those of scripts of one's
 # own are theirs. A test compares the list with the scripts' own.
 _BY_UNIT = {
     "m/s": "velocity",
+    "rad/s": "spin projectileSpin",
+    "deg": "impactAngle",
     "m": "grainRadius criticalRolling smallest largest",
     "s": "duration viscoelasticTime checkpointInterval",
     "t0": "stepFraction impactStepFraction",

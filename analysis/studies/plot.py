@@ -1,5 +1,6 @@
 """A column of a table of runs against another, with error bars over pairs of aggregates."""
 
+import numpy as np
 import pandas
 
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
@@ -15,7 +16,7 @@ FILES = "file", "projectileFile"  # with the seed they distinguish pairs of aggr
 OF_MAXIMUM = {"d_max", "t_max"}
 
 
-def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
+def plot(what, runs, x="velocity", by="", where=None, logarithmic=None, over="", bins=0):
     """Figure of many runs: a quantity against one of their columns, with standard errors over pairs of aggregates.
 
     Pairs differ in their seed and files; open points are single pairs. A fraction of n runs is (k + 1)/(n +
@@ -36,17 +37,21 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         {column: value} of the runs that are drawn.
     logarithmic : str, optional
         Axes: "x", "y", "xy" or "". By default x if it spans a decade.
+    over : str
+        Column over whose values is averaged, such as impact; a pair then counts by its mean.
+    bins : int
+        Number of bins of equal width of x, each drawn at the mean x of its runs; 0: every x for itself.
 
     Returns
     -------
     matplotlib.figure.Figure
-        Refused (a ValueError) also if runs differ in parameters beside x, by, the seed and the files.
+        Refused (a ValueError) also if runs differ in parameters beside x, by, over, the seed and the files.
     """
     found = runs if isinstance(runs, pandas.DataFrame) else table(runs)
     attributes, where = found.attrs, where or {}
     found = found.reset_index(drop=True)  # of tables put together
     found.attrs = attributes
-    for name in filter(None, (what, x, by, *where)):
+    for name in filter(None, (what, x, by, over, *where)):
         if name not in found and not (name == what and what in WHATS):
             names = (*WHATS, *found) if name == what else found
             raise Refused(f"table of runs: no column {name}{suggested(name, names)}")
@@ -60,15 +65,17 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
         if found[name].dtype.kind not in "fiub":
             raise Refused(f"{name}: holds words, or nothing; must be a column of numbers")
     seed = "seed" if "seed" in found else FOLDER
-    _require_alike(found, x, by, seed)
+    _require_alike(found, (x, by, over, seed, *FILES), x)
     files = [name for name in FILES if name in found and found[name].notna().any()]
     found = found.assign(pair=found[[seed, *files]].astype(str).agg("|".join, axis=1))
     for name in filter(None, (x, by)):
         found[name] = found[name].map(lambda value: float(value_text(value)) if isinstance(value, float) else value)
     if logarithmic is None:
         logarithmic = "x" if found[x].min() > 0 and found[x].max() >= 10 * found[x].min() else ""
+    if bins:
+        found[x] = found[x].groupby(_bins(found[x], bins, "x" in logarithmic)).transform("mean")
     try:
-        figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic)
+        figure = _draw(found.sort_values([name for name in (by, x) if name]), what, x, by, logarithmic, over)
     except ValueError as error:  # a pair with several runs
         raise Refused(f"{what}: {error}") from None
     if figure is None:
@@ -79,7 +86,13 @@ def plot(what, runs, x="velocity", by="", where=None, logarithmic=None):
     return figure
 
 
-def _draw(found, what, x, by, logarithmic):
+def _bins(values, number, logarithmic):
+    """Number of the bin of each value, of equal widths on the axis."""
+    place = np.log(values) if logarithmic else values
+    return pandas.cut(place, number, labels=False)
+
+
+def _draw(found, what, x, by, logarithmic, over):
     """The Figure; None if no run has a value."""
     units = found.attrs.get("units", {})
     with_unit = lambda name: name + (f"  [{units[name]}]" if units.get(name, "") not in ("", "1") else "")
@@ -94,7 +107,8 @@ def _draw(found, what, x, by, logarithmic):
         return curves(pandas.concat(parts), lambda own: estimate(mean("value"), own), x, y_label=label, **how)
     found, how["colour"] = found.assign(words=words), "words" if by else ""
     if what == "sticking":
-        of, label = lambda own: ending(own, STICKING), "fraction of runs that stick"
+        label, sticks = "fraction of runs that stick", lambda own: own.outcome.eq(STICKING)
+        of = lambda own: estimate(mean(sticks), own) if over else ending(own, STICKING)
     else:
         column = WHATS.get(what, what)
         of, label = lambda own: estimate(mean(column), own), with_unit(column)
@@ -123,10 +137,10 @@ def _complete(found, what, columns):
     return found[kept]
 
 
-def _require_alike(found, x, by, seed):
+def _require_alike(found, distinguished, x):
     """Refused for runs of several kinds, and for those that differ in other parameters."""
     if found["kind"].nunique() > 1:
         raise Refused(f"the runs are of the kinds {', '.join(found['kind'].unique())}: choose where kind")
-    others = [name for name in varied(found) if name not in (x, by, seed, *FILES)]
+    others = [name for name in varied(found) if name not in distinguished]
     if others and x in parameters(found):
-        raise Refused(differing(found, others, "choose by or where"))
+        raise Refused(differing(found, others, "choose by, over or where"))

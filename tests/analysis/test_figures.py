@@ -78,6 +78,18 @@ def test_a_mean_has_the_standard_error_of_its_pairs(runs):
     assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx(runs.largest_fraction[:4].std() / 2, rel=1e-12)
 
 
+def test_averages_over_a_column_and_in_bins_are_of_pairs(runs):
+    """Runs of a pair at several offsets count by their mean; a bin is drawn at the mean of its x."""
+    spread = runs.assign(impact=np.linspace(0, 0.7, 8), seed=[0, 0, 1, 1, 0, 0, 1, 1])
+    points, bars, _ = drawn(plot("largest", spread, over="impact"))
+    assert points == [(1.0, pytest.approx(0.6)), (3.0, pytest.approx(0.2))]
+    assert 0.5 * (bars[0][1] - bars[0][0]) == pytest.approx(0.2)  # of the means 0.8 and 0.4
+    points, _, _ = drawn(
+        plot("largest", runs.assign(impact=np.arange(8) / 8, seed=range(8)), "impact", bins=2, over="velocity")
+    )
+    assert points == [(pytest.approx(0.1875), pytest.approx(0.6)), (pytest.approx(0.6875), pytest.approx(0.2))]
+
+
 def test_what_cannot_be_drawn_is_refused_in_one_line(runs):
     for how, words in (
         ({"what": "stiking"}, "did you mean sticking"),

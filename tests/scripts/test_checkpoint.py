@@ -69,6 +69,21 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     assert all(continued[name].tobytes() == straight[name].tobytes() for name in straight)
 
 
+def test_a_study_goes_on_with_what_is_undecided_and_leaves_what_is_decided(tmp_path):
+    """Rows without a duration end early if they can, the longer run too; a call again has nothing to do."""
+    cells = "description packing grains velocity threads stepFraction states duration endWhenApart".split()
+    rows = ["slow bcca 64 2 1 0.2 2 3e-7 1", "passes bcca 4 20 1 0.2 2 3e-7 1"]
+    (tmp_path / "two.table").write_text("\n".join([" ".join(cells), *rows]) + "\n")
+    assert "2 done, 0 failed; 1 undecided" in study(tmp_path, "two.table", "-j", "1").stdout
+    before = (tmp_path / "runs" / "passes" / "ended").stat().st_mtime_ns
+    done = study(tmp_path, "two.table", "-j", "1", "--longer", "6e-7")
+    assert "1 to run, 1 of them from checkpoints" in done.stdout and "2 done" in done.stdout, done.stdout + done.stderr
+    assert read_json(tmp_path, "runs", "slow", "run.json")["timeReached"] > 3.1e-7
+    assert (tmp_path / "runs" / "passes" / "ended").stat().st_mtime_ns == before
+    again = study(tmp_path, "two.table", "-j", "1", "--longer", "6e-7").stdout
+    assert "to run" not in again and "2 done, 0 failed" in again
+
+
 @pytest.mark.parametrize("number, status", [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
 def test_an_interrupted_run_leaves_what_it_had_and_prints_what_continues(tmp_path, number, status):
     arguments = ("radius=10", "velocity=10", "duration=400e-9", "threads=1", OFTEN)

@@ -6,7 +6,7 @@ import signal
 import pytest
 from running import PYTHON, STUDY, collide, process_writing, read_json, same_bits, start, study, wait_for
 
-UNDECIDED = "undecided (longer: collide.py continue=FOLDER duration=...)"  # 10 ns are too short for an outcome
+UNDECIDED = "undecided (study.py TABLE --longer SECONDS goes on with them)"  # 10 ns are too short for an outcome
 HEADER = "description radius velocity unusual duration stepFraction checkpointInterval out\n"
 ROWS = {
     "ends": "ends    5  10   * 10e-9   *   *   runs/tiny/ends\n",

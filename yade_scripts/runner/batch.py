@@ -9,7 +9,6 @@ from contextlib import suppress
 from multiprocessing.connection import wait
 
 from yade_scripts.parameters import InputError
-from yade_scripts.run import table
 from yade_scripts.runner.rows import summary
 
 LOGS = os.path.join("runs", "logs")
@@ -128,9 +127,7 @@ class Worker:
     def begin(self, row, log):
         """Have it run a row (rows.StudyRow), which resumes if it was stopped; its output goes to the end of the log."""
         self.row, self._run, self._log, self._stopped = row, None, os.path.abspath(log), False
-        cells = {**table.own(row.cells), "out": row.out, "resume": 1}
-        arguments = [f"{name}={text}" for name, text in cells.items()]
-        task = dict(script=os.path.abspath(row.script), arguments=arguments, threads=row.threads, log=self._log)
+        task = dict(script=os.path.abspath(row.script), arguments=row.arguments, threads=row.threads, log=self._log)
         with open(log, "a"), suppress(OSError):  # a worker that has died: poll() finds out
             self.connection.send(task)
 

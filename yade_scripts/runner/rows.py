@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from analysis.runs import status
-from analysis.runs.format import ENDED_FILE, same
+from analysis.runs.format import ENDED_FILE, SAME, same
 from analysis.runs.lock import under_way
 from analysis.runs.status import DONE, FAILED, WAITING, State
 from yade_scripts.experiments import collision, compression
@@ -39,6 +39,7 @@ class StudyRow:
     parameters: RunParameters = None
     error: str = None
     threads_of_yade: int = None
+    longer: float = None  # duration [s] to which the run goes on if it has ended undecided
 
     @property
     def out(self):
@@ -50,6 +51,13 @@ class StudyRow:
         """Processors that the run takes."""
         return self.threads_of_yade or self.parameters.threads or 1
 
+    @property
+    def arguments(self):
+        """[NAME=VALUE] with which its script runs, or goes on with what is there."""
+        if self.longer and _lengthened(self, status.run_of(self.out)):
+            return [f"{checkpoint.CONTINUE}={self.out}", f"duration={self.longer!r}"]
+        return [f"{name}={text}" for name, text in {**table.own(self.cells), "out": self.out, "resume": 1}.items()]
+
     @cached_property
     def expected_seconds(self):
         """Seconds that its run should take: steps times contacts at SPEED; None for a kind of a user's own."""
@@ -60,8 +68,9 @@ class StudyRow:
         return slower * estimate.steps * estimate.contacts / SPEED / self.threads
 
 
-def read(path):
-    """[StudyRow] of a table; raises InputError, also when two rows would write to one folder or one log."""
+def read(path, longer=None):
+    """[StudyRow] of a table; raises InputError, also when two rows would write to one folder or one log. longer: as of
+    StudyRow."""
     rows, lines = [], {}
     for row in table.read(path):
         for name in row.cells:
@@ -71,7 +80,7 @@ def read(path):
         if row.cells.get("overwrite", "0") != "0":
             given = f"overwrite = {row.cells['overwrite']}"
             raise InputError(f"{path}: line {row.line}: {given}: a study keeps what has ended; must be 0")
-        found = _row(path, row)
+        found = replace(_row(path, row), longer=longer)
         folder = os.path.normpath(found.out) if found.parameters else found.name
         for key in (f"description = {found.name}", f"out = {folder}"):
             if key in lines:
@@ -126,8 +135,9 @@ def state(row, log):
     folder, lock = row.out, under_way(row.out)  # the lock first: a run that ends now has its mark before it gives it up
     run = status.run_of(folder)
     differs = _difference(row, run) if run else None
-    # one that ended undecided, where the row's duration is longer
-    goes_on = differs and row.kind and checkpoint.exists(folder) and _difference(row, run, but=("duration",)) is None
+    # one that ended undecided, where the row's duration, or that to which such runs go on, is longer
+    longer_row = differs and row.kind and checkpoint.exists(folder) and not _difference(row, run, but=("duration",))
+    goes_on = longer_row or (_lengthened(row, run) and run["timeReached"] < row.longer * (1 - 1e-3))
     if os.path.exists(os.path.join(folder, ENDED_FILE)) and not goes_on:
         if not run:
             return refused(f"{status.damage(folder)}; must be restored, or {folder} removed to run the row")
@@ -142,6 +152,15 @@ def state(row, log):
     if problem := failure(log, folder):
         return State(FAILED, progress, note=problem + (f" ({note})" if note else ""))
     return State(WAITING, progress, run.get("wallTime"), note=note)
+
+
+def _lengthened(row, run):
+    """Whether a run is, or was before it was stopped, one that ended undecided, to be gone on with to row.longer."""
+    if not (row.longer and row.kind and run and checkpoint.exists(row.out)):
+        return False
+    own = {**row.parameters.as_dict(), **row.kind.expected(row.parameters, run)}["duration"]
+    ended = os.path.exists(os.path.join(row.out, ENDED_FILE))
+    return ended or (run["parameters"].get("duration") or 0.0) > own * (1 + SAME)
 
 
 def _difference(row, run, but=()):

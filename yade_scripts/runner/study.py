@@ -20,11 +20,12 @@ HEAR_SIGNALS = 0.1  # s, while runs are at work
 
 
 class Study:
-    """The rows of a table, their states, and the estimate of the time left with `jobs` threads at once."""
+    """The rows of a table, their states, and the estimate of the time left with `jobs` threads at once; longer: the
+    duration [s] to which runs that ended undecided go on."""
 
-    def __init__(self, table, jobs):
+    def __init__(self, table, jobs, longer=None):
         self.name = os.path.splitext(os.path.basename(table))[0]
-        self.rows, self.jobs = rows.read(table), jobs
+        self.rows, self.jobs = rows.read(table, longer), jobs
         self.folder = StudyFolder(os.path.join(LOGS, self.name))
         self._states = [None] * len(self.rows)
 
@@ -101,7 +102,7 @@ class Study:
         found = [row for row in done if checkpoint.exists(row.out)]
         if not found:
             return ""
-        return f"; {len(found)} undecided (longer: {os.path.basename(found[0].script)} continue=FOLDER duration=...)"
+        return f"; {len(found)} undecided (study.py TABLE --longer SECONDS goes on with them)"
 
     def slowness(self, states):
         """The time that the rows which have ended took, over the expected one; 1 before one has."""

@@ -24,7 +24,7 @@ class RunsFailed(RuntimeError):
     """Runs of a sweep that failed; the message names them, and why. The others have run, and stay."""
 
 
-def collide(folder="runs", jobs=None, **parameters):
+def collide(folder="runs", jobs=None, longer=None, **parameters):
     """Run collisions: one for every combination of the values of the parameters.
 
         runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
@@ -36,6 +36,8 @@ def collide(folder="runs", jobs=None, **parameters):
         when they have ended. The rows stand in a table there, which study.py runs and shows (--status), too.
     jobs : int, optional
         Threads at once (one for each core).
+    longer : float, optional
+        Duration [s] to which runs that ended undecided go on.
     **parameters
         As `collide.py --help` lists them; a list, range or array stands for several values, None, alone, for the
         default.
@@ -52,7 +54,7 @@ def collide(folder="runs", jobs=None, **parameters):
     RunsFailed
         When a run failed; the others have run. Ctrl-C stops the runs, each with a checkpoint.
     """
-    return _sweep(collision.KIND, "collide.py", parameters, folder, jobs)
+    return _sweep(collision.KIND, "collide.py", parameters, folder, jobs, longer)
 
 
 def compress(folder="runs", jobs=None, **parameters):
@@ -60,7 +62,7 @@ def compress(folder="runs", jobs=None, **parameters):
     return _sweep(compression.KIND, "compress.py", parameters, folder, jobs)
 
 
-def _sweep(kind, script, parameters, folder, jobs):
+def _sweep(kind, script, parameters, folder, jobs, longer=None):
     jobs, folder = CORES if jobs is None else jobs, os.fspath(folder)
     if jobs < 1:
         raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
@@ -69,7 +71,7 @@ def _sweep(kind, script, parameters, folder, jobs):
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    study = Study(file, jobs)
+    study = Study(file, jobs, longer)
     study.folder.lock()
     try:
         states = study.run()
