@@ -198,7 +198,7 @@ long Dynamics::runThread(long steps, const Vec3<double>& growth, const Vec3<doub
 	for (long step = 1; step <= steps; ++step) {
 		barrier.wait(shares.threads);
 		const VelocityRange range = velocities();
-		if (range.fastestComponent() > fastest) return step - 1;
+		if (range.fastestComponent() > fastest || isTooDeep()) return step - 1;
 		const ListWork lists = listWork(age, range, growth);
 		if (lists.boxes) {
 			shares.each([&](int d) { domains[d]->lists.measureBoxes(); });

@@ -100,7 +100,7 @@ public:
 	// ---- what changes a run ----
 
 	/* Returns the steps made: fewer than asked for when a grain moves further in a step than any contact could follow
-	 * (fastestGrain() says which). In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
+	 * (fastestGrain() says which), or two overlap too far (isTooDeep()). In a periodic cell its size changes evenly from what it was to sizeAtEnd [m]. */
 	long run(long steps, const Vec3<double>* sizeAtEnd = nullptr);
 	// A grain that something else has moved, pushed, or blocked. Contacts that it is moved away from break as the functors' do.
 	void set(int grain, const GrainMotion& now);
@@ -136,6 +136,11 @@ public:
 	int grainCount() const { return count; }
 	int threadCount() const { return std::max(1, std::min(options.threads, domainCount())); }
 	const PeriodicCell& cell() const { return domains[0]->cell; }
+	// Whether some have overlapped by more than the smaller radius, where no law holds.
+	bool isTooDeep() const
+	{
+		return std::any_of(domains.begin(), domains.end(), [](const auto& domain) { return domain->ledger.tooDeep; });
+	}
 	// What a periodic cell must hold twice along each axis: the largest distance of neighbours in the lists.
 	double reach() const { return 2 * shared.largestRadius + shared.skin; }
 	Counters counters() const;

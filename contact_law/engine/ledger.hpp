@@ -106,6 +106,7 @@ public:
 	double boundaryWork() const { return boundary.done + meanField; }
 
 	Counts counts;
+	bool tooDeep = false; // whether grains, or a grain and a plane, overlapped by more than the smaller radius in an event
 
 private:
 	const PeriodicCell& cell;

@@ -66,6 +66,7 @@ bool PlaneContacts::step(PlaneContact& c)
 	const ContactStepResult r = planeStepWith[s.mechanisms](c.constants, s.limit, m, c.before, history);
 	addToGrain(g, r.force, r.torque1);
 	ledger.bookOnPlane(c.grain, g, r, s.dt);
+	if (r.geometry.overlap > s.radius[c.grain]) ledger.tooDeep = true;
 	ledger.counts.events += s.dt > 0 && (!c.before.touching || r.isEvent());
 	work -= s.dt * dot(r.forceBefore, plane.velocity);
 	after[c.plane] = after[c.plane] + (r.force - r.forceBefore);

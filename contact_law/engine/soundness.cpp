@@ -95,11 +95,11 @@ double unstableStep(const Dynamics& dynamics)
 // ---- why a run broke down ----
 
 namespace {
-	// visit(Overlap), of every contact (but bonds) of a domain's as it was a time `ago` [s].
+	// visit(Overlap), of every contact and bond of a domain's as it was a time `ago` [s].
 	template <class Visit> void eachOverlap(const Dynamics& dynamics, const Domain& domain, double ago, Visit&& visit)
 	{
 		const SharedState& shared = dynamics.state();
-		eachSlotOf(dynamics, domain, &TouchingPairs::contacts, [&](const ContactList& list, int slot, int first, int second) {
+		const auto visitSlot = [&](const auto& list, int slot, int first, int second) {
 			const int i = list.first(slot), j = list.second(slot);
 			const Grain &a = shared.grains[i], &b = shared.grains[j];
 			Vec3<double> d = separationOf(a, b);
@@ -107,7 +107,9 @@ namespace {
 			nearestImage(dynamics.cell(), d);
 			const double overlap = shared.radius[i] + shared.radius[j] - std::sqrt(dot(d, d));
 			visit(Overlap { dynamics.id(first), dynamics.id(second), overlap / std::min(shared.radius[i], shared.radius[j]) });
-		});
+		};
+		eachSlotOf(dynamics, domain, &TouchingPairs::contacts, visitSlot);
+		eachSlotOf(dynamics, domain, &TouchingPairs::bonds, visitSlot);
 		for (const PlaneContact& c : domain.planes.contacts)
 			visit(Overlap { dynamics.id(dynamics.given(c.grain)), shared.planes[c.plane].id,
 			        c.before.overlap / shared.radius[c.grain] });

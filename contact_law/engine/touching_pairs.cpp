@@ -200,6 +200,7 @@ Vec3<double> ContactEvents::separationAStepAgo(int i, int j, const ContactMotion
 void ContactEvents::book(int i, int j, const ContactStepResult& r, const ContactMotion& m, const Image& image, Ownership o)
 {
 	ledger.book(r, m, image, o);
+	if (r.geometry.overlap > std::min(s.radius[i], s.radius[j])) ledger.tooDeep = true; // beyond the fit: always an event
 	const Vec3<double> force = r.forceBefore - 0.5 * r.force;
 	if (ownsFirst(o)) ledger.early.push_back({ i, force, r.torqueBefore1 - 0.5 * r.torque1 });
 	if (ownsSecond(o)) ledger.early.push_back({ j, -force, r.torqueBefore2 - 0.5 * r.torque2 });

@@ -265,6 +265,16 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::stepIsBelow(Real unstable) const
 	return is;
 }
 
+bool Law2_ScGeom_JKRWadaPhys_JKRWada::isWithin(const Interaction& interaction, Real overlap, Real radius) const
+{
+	const bool is = overlap <= radius;
+	if (!is)
+		refuseInStep(*scene,
+		        "Law2_ScGeom_JKRWadaPhys_JKRWada: " + tooDeep(interaction.getId1(), interaction.getId2(), overlap / radius)
+		                + ": must be at most 1");
+	return is;
+}
+
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr<IPhys>& physics, Interaction* interaction)
 {
 	if (!shapes.fit(*scene)) return true;
@@ -290,6 +300,8 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 		imageVelocity = -(scene->cell->velGrad * (scene->cell->prevHSize * cells));
 		velocity += imageVelocity;
 	}
+	const Real smaller = std::min(constants.radius1, constants.radius2);
+	if (!isWithin(*interaction, constants.radius1 + constants.radius2 - separation.norm(), smaller)) return true;
 	const Vec3d apart = toKernel(separation);
 	const double inverseMass = contact_law::inverseMassAlong(apart, 1 / state1.mass, state1.blockedDOFs)
 	        + contact_law::inverseMassAlong(apart, 1 / state2.mass, state2.blockedDOFs);
@@ -330,6 +342,9 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	const ContactMotion motion = contact_law::motionPast(plane, toKernel(grain.pos), toKernel(grain.vel), toKernel(grain.angVel), dt,
 	        contact_law::inverseMassAlong(plane.normal, 1 / grain.mass, grain.blockedDOFs),
 	        contact_law::inverseInertiaOf(1 / grain.inertia[0], grain.blockedDOFs));
+	// YADE turns the normal where a grain's centre passes the plane: it was on the other side a step ago
+	const Real overlap = constants.radius1 - dot(motion.separation, plane.normal);
+	if (!isWithin(interaction, overlap + std::max(Real(0), dt * dot(motion.velocity, plane.normal)), constants.radius1)) return true;
 	const Vec3d foot = plane.across(toKernel(grain.pos - wall.pos)); // of the grain's centre, from the wall's position
 	contact_law::PlaneHistory<double> history {
 		{ { toKernel(grain.ori * phys.pointer2), plane.normal }, toKernel(phys.pointer1) - foot }, phys.twist

@@ -215,7 +215,8 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	SceneShapes shapes;
 
 	unsigned mechanismsOf(const contact_law::PairConstants<double>&) const;
-	bool stepIsBelow(Real unstable) const; // refuses the scene in this step if not
+	bool stepIsBelow(Real unstable) const;                              // refuses the scene in this step if not
+	bool isWithin(const Interaction&, Real overlap, Real radius) const; // likewise
 	bool goPlane(const GenericSpheresContact&, JKRWadaPhys&, const contact_law::PairConstants<double>&, const Interaction&);
 	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, unsigned mechanisms,
 	        const contact_law::ContactStepResult&);

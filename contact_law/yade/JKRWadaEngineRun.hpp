@@ -80,19 +80,13 @@ public:
 	// wants them.
 	std::string wrong(const contact_law::Dynamics&, const std::vector<contact_law::GrainMotion>&, long made, long wanted,
 	        const contact_law::Energies* energies);
-	// A script has changed something: overlaps are checked after this step, and losses and the energies' sum are others.
-	void forget() { sumKnown = false, lostBefore = -1e300, stepsSinceCheck = stepsBetweenChecks; }
-
-	// For the start: two grains of which each reaches beyond the other's centre, or empty.
-	static std::string tooDeep(const contact_law::Dynamics&);
+	// A script has changed something: losses and the energies' sum are others.
+	void forget() { sumKnown = false, lostBefore = -1e300; }
 
 private:
-	static constexpr long stepsBetweenChecks = 30; // of the overlaps, which take about half a small step
-
 	std::string wrongMotion(const contact_law::Dynamics&, const std::vector<contact_law::GrainMotion>&, long made, long wanted) const;
 	std::string wrongEnergies(const contact_law::Energies&, double contactEnergy);
 
-	long stepsSinceCheck = 0;
 	bool sumKnown = false;
 	double firstSum = 0, lostBefore = 0; // of the energies [J]
 };

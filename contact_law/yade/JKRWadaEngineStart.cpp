@@ -210,8 +210,9 @@ void JKRWadaEngine::requireSound(const Run& run)
 	const Dynamics& dynamics = run.dynamics;
 	refuseIfAny(SceneCell::tooSmall(dynamics.cell(), dynamics));
 	requireStable(dynamics, dynamics.state().dt);
-	const std::string deep = StepWatch::tooDeep(dynamics);
-	if (!deep.empty()) refuseInEngine(deep + " at the start: must be at most 1");
+	const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics);
+	if (deepest.overlap > 1)
+		refuseInEngine(tooDeep(deepest.first, deepest.second, deepest.overlap) + " at the start: must be at most 1");
 }
 
 void JKRWadaEngine::requireStable(const Dynamics& dynamics, Real step)

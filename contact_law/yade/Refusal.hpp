@@ -2,6 +2,7 @@
 #pragma once
 #include "../engine/shared_state.hpp"
 #include "../yade_interface/yade.hpp"
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <future>
@@ -40,6 +41,12 @@ inline std::string tooLong(const std::string& step, double seconds, double unsta
 }
 
 inline std::string bodyName(std::size_t id) { return "body " + std::to_string(id); }
+
+inline std::string tooDeep(int id, int other, double overlap) // over the smaller radius
+{
+	return bodyName(std::min(id, other)) + " and " + bodyName(std::max(id, other)) + " overlap by " + rounded(overlap)
+	        + " of the smaller radius";
+}
 
 // ---- O.run(n) steps in a thread of its own ----
 

@@ -1,5 +1,6 @@
 #include "SceneShapes.hpp"
 #include "SceneContacts.hpp"
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -22,12 +23,20 @@ namespace {
 	// Of the scene, for the functors.
 	std::string faultOf(const Scene& scene)
 	{
+		Real smallest = std::numeric_limits<Real>::infinity(), fastest = 0;
+		const Body* moving = nullptr;
 		for (const auto& body : *scene.bodies) {
 			if (!body || !dynamic_cast<const JKRMat*>(body->material.get())) continue;
 			const std::string fault = yade::faultOf(*body, scene, InPeriodic::Refused);
 			if (!fault.empty()) return fault;
+			if (const auto* sphere = dynamic_cast<const Sphere*>(body->shape.get()))
+				smallest = std::min(smallest, sphere->radius);
+			const Real speed = body->state->vel.cwiseAbs().maxCoeff();
+			if (!(speed <= fastest)) fastest = speed, moving = body.get();
 		}
-		return "";
+		if (fastest * scene.dt <= smallest / 2) return "";
+		return bodyName(moving->getId()) + " moves at " + rounded(moving->state->vel.norm())
+		        + " m/s, more than half the smallest radius in a step";
 	}
 
 	std::mutex refusals;

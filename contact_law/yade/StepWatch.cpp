@@ -22,23 +22,10 @@ namespace {
 	}
 }
 
-std::string StepWatch::tooDeep(const Dynamics& dynamics)
-{
-	const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics);
-	if (!(deepest.overlap > 1)) return "";
-	return bodyName(std::min(deepest.first, deepest.second)) + " and " + bodyName(std::max(deepest.first, deepest.second))
-	        + " overlap by " + rounded(deepest.overlap) + " of the smaller radius";
-}
-
 std::string StepWatch::wrong(
         const Dynamics& dynamics, const Motions& motions, long made, long wanted, const contact_law::Energies* energies)
 {
 	std::string found = wrongMotion(dynamics, motions, made, wanted);
-	stepsSinceCheck += made;
-	if (found.empty() && stepsSinceCheck >= stepsBetweenChecks) {
-		stepsSinceCheck = 0;
-		found = tooDeep(dynamics);
-	}
 	if (!found.empty() || !energies) return found;
 	const auto& c = dynamics.state().common;
 	found = wrongEnergies(*energies, c.pullOffForce * c.pullOffOverlap);
@@ -55,6 +42,10 @@ std::string StepWatch::wrongMotion(const Dynamics& dynamics, const Motions& moti
 		while (isFinite(k))
 			++k;
 		return bodyName(dynamics.id(k)) + " has no finite position or velocity any more" + withItsContact(dynamics, dynamics.id(k));
+	}
+	if (dynamics.isTooDeep()) { // before the grains moved, where they did
+		const contact_law::Overlap deepest = contact_law::deepestOverlap(dynamics, made == wanted ? 0 : dynamics.state().dt);
+		return tooDeep(deepest.first, deepest.second, deepest.overlap);
 	}
 	if (made == wanted) return "";
 	const auto [fastest, speed] = contact_law::fastestGrain(dynamics);

@@ -52,12 +52,33 @@ def test_a_body_put_onto_another_is_noticed(away):
     assert "body 1" in message and "body 3" in message
 
 
-def test_grains_that_overlap_too_far_at_the_start_are_refused():
-    new_scene(0.01 * unit)
-    for x in (0, 5e-7, 5.9e-7):
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+@pytest.mark.parametrize("neck", [0, 0.3])
+@pytest.mark.parametrize("apart, overlap", [(0.9e-7, "1.1"), (0.0, "2")])
+def test_grains_that_overlap_too_far_at_the_start_are_refused(mover, neck, apart, overlap):
+    new_scene(0.01 * unit, mover, neck=neck)
+    for x in (0, 5e-7, 5e-7 + apart):
         grain((x, 0, 0), 1e-7, ice())
-    fused_engine()
-    assert "body 1 and body 2 overlap by 1.1 of the smaller radius at the start: must be at most 1" in refusal()
+    message = refusal()
+    assert f"body 1 and body 2 overlap by {overlap if not neck else ''}" in message and "must be at most 1" in message
+    assert np.isfinite(positions()).all()
+
+
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+@pytest.mark.parametrize("step", [0.4, 0.1, 0.05, 0.01])
+@pytest.mark.parametrize("wall", [False, True])
+def test_grains_that_pass_through_each_other_or_a_wall_are_refused_whatever_the_step(mover, step, wall):
+    """At 3 km/s, with the engine in O.steps of seven small ones."""
+    new_scene(step * unit, mover, **({"subSteps": 7} if mover == "fused" else {}))
+    O.trackEnergy = False
+    grain((0, 0, 0), 1e-7, ice(), (2000 if wall else 1500, 0, 0))
+    if wall:
+        O.bodies.append(utils.wall((2e-7, 0, 0), axis=0, material=ice()))
+    else:
+        grain((4.1e-7, 1e-9, 0), 1e-7, ice(), (-1500, 0, 0))
+    message = refusal(int(3e-10 / O.dt) + 2)
+    assert "\n" not in message and "body " in message
+    assert ("more than half the smallest radius" if step == 0.4 else "of the smaller radius") in message
 
 
 def cluster_of_12(**options):
