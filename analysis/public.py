@@ -1,6 +1,7 @@
 """The names that `import analysis` offers."""
 # ruff: noqa: F401, I001
 
+from .atlas.own import outcome_table
 from .atlas.query import outcome
 from .measures.compression import compression_and_velocity, maximum_compression
 from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses

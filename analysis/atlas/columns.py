@@ -81,7 +81,7 @@ def read_runs(file):
 
 
 def measure(run):
-    """{column: value} of a RunFolder of the atlas; RunFolderError where it lacks a parameter."""
+    """{column: value} of a RunFolder; RunFolderError where it lacks a parameter."""
     try:
         row = _scene(run)
     except (KeyError, TypeError, ValueError) as error:
@@ -99,7 +99,8 @@ def measure(run):
 
 def _scene(run):
     given, derived = run.settled, run.derived
-    number, held = NAME.fullmatch(run.path.name).groups()
+    name = NAME.fullmatch(run.path.name)  # None: of a run of one's own
+    number, held = name.groups() if name else (-1, None)
     packing = derived.get("targetPacking") or {}
     names = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
     radius = float(derived["grainRadius"])

@@ -38,6 +38,9 @@ def outcome(
     impact=None,
     file=None,
     structure=GROWN,
+    surface_energy=None,
+    young=None,
+    density=None,
 ):
     """What becomes of collisions of two aggregates, from the atlas's tables of outcomes.
 
@@ -60,6 +63,8 @@ def outcome(
         Impact parameter, 0 to 1, over the sum of these radii; averaged, uniform in its square, if left out.
     file : path, optional
         Another table than those of the atlas.
+    surface_energy, young, density : float, optional
+        [J/m^2, Pa, kg/m^3]; by default those of the material. They act through v_break, as the radius does.
     structure : {"grown", "close-packed"}
         Which of the atlas's tables: grown by hits of grains and clusters, or compressed; or close-packed.
 
@@ -73,7 +78,8 @@ def outcome(
     """
     if structure not in STRUCTURES:
         raise ValueError(f"structure = {structure}: must be {' or '.join(STRUCTURES)}")
-    query = coordinates(velocity, projectile, target, filling, material, grain_radius, impact)
+    grains = grains_of(material, grain_radius, surface_energy, young, density)
+    query = coordinates(velocity, projectile, target, filling, grains, impact)
     table = _table(file or outcomes_file(structure, impact is None), maxwell)
     found, ratio = table.lookup(**query), query["mass_ratio"]
     for name in set(GAINING) & set(found):
@@ -86,11 +92,10 @@ def outcome(
     return found
 
 
-def coordinates(velocity, projectile, target, filling, material, grain_radius, impact):
-    """{axis of the tables: array} of arguments of outcome(); ValueError for what they cannot be."""
-    if material not in MATERIALS:
-        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
-    v_break = breaking_velocity(MATERIALS[material], radius_of(material, grain_radius))
+def coordinates(velocity, projectile, target, filling, grains, impact):
+    """{axis of the tables: array} of arguments of outcome(), grains as of grains_of(); ValueError for what they cannot
+    be."""
+    v_break = breaking_velocity(*grains)
     projectile, target = numbers("projectile", projectile, least=1), numbers("target", target, least=1)
     large, small = np.maximum(projectile, target), np.minimum(projectile, target)
     square = {} if impact is None else {"impact_square": numbers("impact", impact, least=0, most=1) ** 2}
@@ -109,6 +114,15 @@ def radius_of(material, grain_radius=None):
         return GRAIN_RADIUS[material]
     low, high = GRAIN_RADII
     return float(numbers("grain_radius", grain_radius, (), least=low, most=high))
+
+
+def grains_of(material, grain_radius=None, surface_energy=None, young=None, density=None):
+    """(theory.Material, radius [m]) of arguments of outcome(); ValueError for what they cannot be."""
+    if material not in MATERIALS:
+        raise ValueError(f"material = {material}: must be {' or '.join(MATERIALS)}")
+    given = {"surface_energy": surface_energy, "young": young, "density": density}
+    own = {name: float(numbers(name, value, (), positive=True)) for name, value in given.items() if value is not None}
+    return replace(MATERIALS[material], **own), radius_of(material, grain_radius)
 
 
 @lru_cache
@@ -145,14 +159,19 @@ def in_words(options):
     """Lines (str) for the options of commands.outcome: the query, whether it is within the data, probabilities, what is
     left, and the nearest runs."""
     pair = options.velocity, options.projectile, options.target, options.filling
-    more = {"material": options.material, "grain_radius": options.grain_radius, "impact": options.impact}
-    found = outcome(*pair, maxwell=options.maxwell, structure=options.structure, **more)
+    names = "material", "grain_radius", "surface_energy", "young", "density"
+    of_grains = {name: getattr(options, name) for name in names}
+    found = outcome(*pair, maxwell=options.maxwell, impact=options.impact, structure=options.structure, **of_grains)
+    material, radius = grains_of(**of_grains)
     answer = {name: float(value) for name, value in found.items()}
-    point = pandas.DataFrame([{"impact_square": 0.5} | coordinates(*pair, **more)]).astype(float)
+    point = pandas.DataFrame([{"impact_square": 0.5} | coordinates(*pair, (material, radius), options.impact)]).astype(
+        float
+    )
     speeds = ", rms of a Maxwell distribution" if options.maxwell else ""
     yield (
         f"{options.structure} aggregates of {options.projectile:g} and {options.target:g} grains of "
-        f"{options.material}, radius {1e6 * radius_of(options.material, options.grain_radius):g} um, "
+        f"{options.material} (radius {1e6 * radius:g} um, surface energy {material.surface_energy:g} J/m^2, Young's "
+        f"modulus {material.young:g} Pa, density {material.density:g} kg/m^3), "
         f"filling {options.filling:g}, {options.velocity:g} m/s ({point.velocity[0]:.3g} v_break{speeds}), "
         + ("averaged over impact parameters:" if options.impact is None else f"b = {options.impact:g}:")
     )

@@ -91,6 +91,9 @@ def _add_outcome(commands):
     add("--material", default="ice", help="of the grains, ice or silicate")
     of_radius = "of the grains [m] (default: that of the material, 1e-07 of ice and 6e-07 of silicate)"
     add("--grain-radius", type=float, metavar="R", help=of_radius)
+    add("--surface-energy", type=positive, metavar="X", help="of the grains [J/m^2] (default: that of the material)")
+    add("--young", type=positive, metavar="X", help="Young's modulus [Pa] (likewise)")
+    add("--density", type=positive, metavar="X", help="of the grains [kg/m^3] (likewise)")
 
 
 def outcome(options):

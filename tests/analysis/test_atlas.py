@@ -1,5 +1,7 @@
 """The collision atlas: rules of outcomes, columns, the model and the region of its runs, queries, the command."""
 
+from dataclasses import replace
+
 import numpy as np
 import pandas
 import pytest
@@ -10,7 +12,15 @@ from analysis.__main__ import main
 from analysis.atlas import outcome_table, query, rules, variables
 from analysis.atlas.columns import COLUMNS, measure, power_law_index, read_runs
 from analysis.atlas.outcome_table import ERRORS, INTERVALS, PROBABILITIES, read_outcomes, write_outcomes
-from analysis.atlas.variables import GROWN, MARGIN, STRUCTURES, Region, fit_and_held_out, of_structure
+from analysis.atlas.variables import (
+    GROWN,
+    MARGIN,
+    STRUCTURES,
+    Region,
+    breaking_velocity,
+    fit_and_held_out,
+    of_structure,
+)
 from analysis.runs.table import make_table, table_text
 from analysis.theory import GRAIN_RADIUS, ICE
 
@@ -186,6 +196,31 @@ def test_structure_material_and_radius_of_a_query():
         analysis.outcome(5, 200, 500, 0.4, material="lead")
 
 
+def test_other_constants_of_grains_act_through_the_breaking_velocity():
+    """At a fifth of the surface energy it is 0.26 times as high; the answer names the constants."""
+    pair, own = (200, 500, 0.15), {"surface_energy": 0.02, "young": 3e9}
+    ratio = breaking_velocity(replace(ICE, **own), 1e-7) / breaking_velocity(ICE, 1e-7)
+    assert analysis.outcome(10 * ratio, *pair, **own)["p_sticking"] == pytest.approx(
+        analysis.outcome(10, *pair)["p_sticking"], rel=1e-9
+    )
+    with pytest.raises(ValueError, match="surface_energy"):
+        analysis.outcome(10, *pair, surface_energy=-1)
+
+
+def test_a_table_of_ones_own_runs_has_their_fractions(tmp_path):
+    """Of pairs of grains, of which two stick and one bounces, at twice the speed all bounce."""
+    for number, (velocity, sticks) in enumerate([(20.0, True), (20.0, True), (20.0, False), (40.0, False)]):
+        two_pairs(tmp_path / "runs" / str(number), velocity, number, sticks)
+    file = tmp_path / "own.txt"
+    analysis.outcome_table(tmp_path / "runs", file)
+    table = read_outcomes(file)
+    node = {"grains": 2, "mass_ratio": 1, "filling": 0.46}
+    for velocity, runs, sticking in ((20.0, 3, 2.2 / 4), (40.0, 1, 0.1)):
+        found = table.lookup(velocity=velocity / breaking_velocity(ICE, 1e-7), **node)
+        assert found["runs"] == pytest.approx(runs) and found["p_sticking"] == pytest.approx(sticking)
+        assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1)
+
+
 def test_command_answers_with_the_nearest_runs(capsys):
     query = "outcome --projectile 200 --target 300 --filling 0.3 --velocity"
     assert main(f"{query} 1 --impact 0.3".split()) == 0
@@ -195,7 +230,7 @@ def test_command_answers_with_the_nearest_runs(capsys):
     assert "study.py runs/atlas-full-" in text and "EXTRAPOLATION" not in text and "in 90 %" in text
     assert main(f"{query} 300 --material silicate".split()) == 0
     title, beyond, sticking = capsys.readouterr().out.splitlines()[:3]
-    assert "silicate, radius 0.6 um" in title and "EXTRAPOLATION" in beyond and "error is not known" in beyond
+    assert "silicate (radius 0.6 um" in title and "EXTRAPOLATION" in beyond and "error is not known" in beyond
     assert sticking.split()[0] == "sticking" and "(" not in sticking
     assert main(f"{query} 1 --material lead".split()) == 2
     assert capsys.readouterr().err == "analysis: material = lead: must be ice or silicate\n"

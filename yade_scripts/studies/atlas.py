@@ -213,12 +213,16 @@ def tables():
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("size", choices=SIZES)
-    size = parser.parse_args().size
+    parser.add_argument("rows", nargs="*", type=int, metavar="FIRST LAST", help="only these, before LAST")
+    options = parser.parse_args()
+    size, part = options.size, options.rows
+    if part and not (len(part) == 2 and 0 <= part[0] < part[1] <= SIZES[size]):
+        parser.error(f"{part}: must be two rising numbers, of {size}'s {SIZES[size]} rows")
     os.chdir(TOP)
     os.makedirs(PACKINGS, exist_ok=True)
     rows = []
     try:
-        for scene in progress(scenes(SIZES[size]), "making packings"):
+        for scene in progress(scenes(SIZES[size])[slice(*part or [None])], "making packings"):
             if scene.structure in FILLINGS and not all(map(os.path.exists, scene.files)):
                 maker = _close_packed if scene.structure == "cpe" else _compressed
                 for index, file in enumerate(scene.files):
@@ -227,7 +231,7 @@ def main():
             rows.append({**cells, "duration": MISSED} if never_touch(cells) else cells)
     except PackingError as error:
         sys.exit(f"atlas.py: {error}")
-    table.write(f"runs/atlas-{size}.table", rows, HEAD)
+    table.write(f"runs/{'-'.join(['atlas', size, *map(str, part)])}.table", rows, HEAD)
 
 
 if __name__ == "__main__":
