@@ -42,7 +42,7 @@
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := all
 STUDIES := elastoplastic viscous compression sintered compressed atlas
-.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build gpu known-yade always install uninstall image demo check test \
+.PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build gpu headers tried always install uninstall image demo check test \
         test-edits test-newest test-dustpy disk test-mutations test-viewer test-debian test-arm64 yade-tree \
         test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \
         conformance docs test-docs lint format study-status tables
@@ -57,13 +57,19 @@ OVERLAY        := build/$(LIBRARY_FOLDER)
 PLUGIN         := $(OVERLAY)/libcontact_law.so
 OBJECTS_FOLDER := build/objects
 
-# The versions of YADE that contact_law/yade_interface has been tried with (make test-debian). Another one is refused.
+# The versions of YADE that contact_law/yade_interface has been tried with (make test-debian). Another one is compiled against the headers of
+# its own source, from the distribution's archive.
 YADE_DESCRIBED := 2023.02a 2025.2.0 2026.1.0
 
 # Found out. Empty on a system that lacks the packages; they are installed before anything is compiled, by a make of its own.
 PYTHON := /usr/bin/python3
 PYTHON_VERSION := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)
 YADE_VERSION ?= $(shell sed -n "s/^version *= *'\(.*\)'/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
+UNTRIED = $(filter-out $(YADE_DESCRIBED),$(YADE_VERSION))
+SOURCES := build/yade-source
+ifndef YADE_INCLUDE
+YADE_INCLUDE := $(UNTRIED:%=$(SOURCES)/%)
+endif
 
 PACKAGES := yade g++ make libboost-dev libboost-python-dev libboost-serialization-dev libeigen3-dev python3-dev \
             python3-numpy python3-scipy python3-numba python3-pandas python3-matplotlib python3-sklearn python3-tqdm python3-yaml python3-jinja2 python3-markdown python3-pytest python3-pytest-xdist \
@@ -81,7 +87,7 @@ YADE_DEFINITIONS := -DEIGEN_DONT_VECTORIZE -DEIGEN_DONT_ALIGN -DEIGEN_DISABLE_UN
 YADE_FEATURES ?= $(shell sed -n "s/^features *= *'\([^']*\)'.*/\1/p" $(YADE_LIBRARIES)/py/yade/config.py 2>/dev/null)
 YADE = $(strip $(YADE_VERSION) $(YADE_FEATURES))
 YADE_DEFINITIONS += $(if $(filter MPI,$(YADE_FEATURES)),-DYADE_MPI)
-ifdef YADE_INCLUDE
+ifneq ($(YADE_INCLUDE),)
 PACKAGES += libopenmpi-dev
 YADE_DEFINITIONS += -DCONTACT_LAW_YADES_OWN_HEADERS -DYADE_REAL_BIT=64 -DYADE_REAL_DEC=15 -DYADE_DISABLE_REAL_MULTI_HP -DMAX_LOG_LEVEL=5 \
                     -DYADE_OPENMP -DYADE_OPENGL -DYADE_MPI -DYADE_FEM -DTHERMAL -DPARTIALSAT -DBV_FUNCTOR_CACHE= \
@@ -114,23 +120,28 @@ LIBRARIES := -lyade -lpkg_common -lpkg_dem -lboost_python$(subst .,,$(PYTHON_VER
 # ---- what is built ----
 
 INTERFACE := contact_law/yade_interface
-YADE_SOURCES   := $(wildcard contact_law/yade/*.cpp $(INTERFACE)/*.cpp)
+YADE_SOURCES   := $(filter-out $(if $(UNTRIED),%/layouts.cpp),$(wildcard contact_law/yade/*.cpp $(INTERFACE)/*.cpp))
 ENGINE_SOURCES := $(filter-out $(if $(filter x86_64,$(PROCESSOR)),,%/avx2.cpp %/avx512.cpp),$(wildcard contact_law/engine/*.cpp))
 YADE_OBJECTS   := $(YADE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 ENGINE_OBJECTS := $(ENGINE_SOURCES:contact_law/%.cpp=$(OBJECTS_FOLDER)/%.o)
 OBJECTS        := $(YADE_OBJECTS) $(ENGINE_OBJECTS)
 PRECOMPILED    := $(OBJECTS_FOLDER)/precompiled.hpp
 
-UNKNOWN_YADE := must be one of $(YADE_DESCRIBED), or compile against its source: make YADE_INCLUDE=/path/to/yade
 all: deps
-	@$(MAKE) known-yade
+	@$(MAKE) headers
 	@$(MAKE) $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
+	@$(MAKE) tried
 
 build: $(PLUGIN) build/overlay build/gpu/libprocessor.so
 	@echo "contact_law is built: $(PLUGIN)"
 
-known-yade:
-	@$(if $(YADE_INCLUDE)$(filter $(YADE_VERSION),$(YADE_DESCRIBED)),:,echo "make: YADE $(YADE_VERSION) is installed: $(UNKNOWN_YADE)" >&2; exit 1)
+# Both do nothing with a YADE that is described.
+NOT_TRIED = YADE $(UNTRIED) has not been tried by us: compiled against its own headers, and the demo ran; make test tries all of it
+headers:
+	@$(if $(UNTRIED),$(MAKE) deps,:)
+	@$(if $(filter $(SOURCES)/%,$(YADE_INCLUDE)),$(PYTHON) $(INTERFACE)/source.py $(YADE_INCLUDE),:)
+tried:
+	@$(if $(UNTRIED),$(MAKE) runs/demo/ended && echo "$(NOT_TRIED)",:)
 
 # $(OBJECTS) is also what the folder held: a source that goes must leave the plugin too.
 $(PLUGIN): $(OBJECTS) build/objects.list build/yade.list | build/overlay
@@ -280,7 +291,7 @@ test-arm64 yade-tree test-sanitizers test-slurm: all
 	@$(MAKE) deps PACKAGES="$(NEEDS)"
 	@$(PYTHON) tests/drivers/$(or $(DRIVER),$(subst -,_,$(@:test-%=%))).py
 test-arm64: NEEDS := g++-aarch64-linux-gnu
-yade-tree: NEEDS := dpkg-dev git libopenmpi-dev bzip2
+yade-tree: NEEDS := git libopenmpi-dev
 test-sanitizers: NEEDS := clang-14 libclang-rt-14-dev libomp-14-dev llvm-14
 test-slurm: NEEDS := slurm-wlm munge
 test-slurm: DRIVER := try_slurm

@@ -51,8 +51,7 @@ def _load(yade):
         other = " ".join(sorted(set(running) ^ set(described)))
         raise ImportError(
             f"contact_law: refusing to load: this is YADE {yade.config.version}, not {described[0]}, for which it was "
-            f"compiled (they differ in {other}); run make again with this one, or compile against its source: "
-            "make YADE_INCLUDE=/path/to/its/source YADE_VERSION=its-version"
+            f"compiled (they differ in {other}); run make again with this one"
         )
     try:
         # PyDLL keeps Python's lock, which the library needs. Like YADE's own libraries, it shares its symbols.

@@ -67,7 +67,7 @@ void JKRWadaEngine::enter(Moment moment)
 	if (!current) requireAlone(*scene), start();
 	if (!ContactsHolder(*scene).is(current->name))
 		refuseInEngine("other engines have moved these grains since this engine's last step: make a new engine");
-	current->dynamics.setThreads(threads);
+	current->dynamics.setThreads(threadsOrYades());
 	takeChanges(moment);
 }
 
@@ -294,6 +294,7 @@ boost::python::dict JKRWadaEngine::statistics() const
 		result[std::string(name) + "Energy"] = all.lost.*energy;
 	}
 	result["domains"] = dynamics.parts().size();
+	result["threads"] = dynamics.threadCount();
 	result["contactUpdates"] = all.counters.contactUpdates;
 	result["events"] = all.counts.events;
 	result["formed"] = all.counts.formed;

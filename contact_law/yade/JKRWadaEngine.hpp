@@ -28,6 +28,7 @@ class JKRWadaEngine : public GlobalEngine {
 	Settings settings() const;
 	void requireSameSettings() const;
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
+	int threadsOrYades() const;
 	void requireInRange() const;
 	void requireOwnScene() const;
 
@@ -87,7 +88,7 @@ public:
 		"engines, and which changes by scripts it obeys. "
 		"Results are the same to the bit whatever the number of threads, and after O.save and O.load.",
 		((int, subSteps, 1, , "Small steps in one O.step."))
-		((int, threads, 1, , "Threads to use, at most as many as domains."))
+		((int, threads, 0, , "Threads to use, at most as many as domains. 0: YADE's own (yade -jN)."))
 		((int, domains, 0, , "Parts that the grains are divided into, for the threads. 0: by the number of bodies, 2 up to "
 			"24,000, then 4, 8 ... up to 64, so that results do not depend on the machine. Another number changes results by "
 			"rounding."))
@@ -133,7 +134,7 @@ public:
 			"with Energy, in J); contactUpdates (small steps times contacts), events (contacts that formed or broke, and "
 			"slips), formed and broken (contacts, bonds not among them), searches (for neighbours, of all grains), "
 			"distanceChecks (of pairs that do not touch), orders (times that grains were put into a new order), domains, "
-			"instructions.")
+			"threads, instructions.")
 	);
 	// clang-format on
 };

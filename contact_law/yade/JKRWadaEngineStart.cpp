@@ -2,6 +2,7 @@
 // leaves behind.
 #include "JKRWadaEngineRun.hpp"
 #include "SceneShapes.hpp"
+#include <omp.h>
 #include <set>
 
 namespace yade {
@@ -56,7 +57,7 @@ void JKRWadaEngine::requireInRange() const
 	constexpr int mostSubSteps = 1000000; // of a pair some seconds; nothing stops an O.step that has begun
 	if (subSteps < 1 || subSteps > mostSubSteps)
 		refuseInEngine("subSteps = " + text(subSteps) + ": must be >= 1 and <= " + text(mostSubSteps));
-	if (threads < 1) refuseInEngine("threads = " + text(threads) + ": must be >= 1");
+	if (threads < 0) refuseInEngine("threads = " + text(threads) + ": must be >= 1, or 0 (those of YADE)");
 	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
 	try {
 		yade::requireInRange({ linearDamping, slidingStiffnessFactor }, neck);
@@ -74,13 +75,15 @@ void JKRWadaEngine::requireOwnScene() const
 		        "a scene must have an engine of its own; make a new one");
 }
 
+int JKRWadaEngine::threadsOrYades() const { return threads > 0 ? threads : omp_get_max_threads(); }
+
 contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
 	Dynamics::Options options;
 	options.pairs = { linearDamping, slidingStiffnessFactor };
 	options.neck = neck;
 	options.domains = domains;
-	options.threads = threads;
+	options.threads = threadsOrYades();
 	options.instructions = instructions;
 	options.orientations = orientations;
 	bool drag = linearDamping > 0;

@@ -86,7 +86,7 @@ def test_same_bits_on_any_threads_every_time_and_after_a_checkpoint(name):
 
     def state():
         counts = O.engines[0].statistics()
-        del counts["searches"], counts["distanceChecks"]  # of the lists of neighbours
+        del counts["threads"], counts["searches"], counts["distanceChecks"]  # the latter of the lists of neighbours
         return motion(), sintering.necks(), counts, dict(O.energy.items())
 
     def end(threads, save=False):

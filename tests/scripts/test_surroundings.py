@@ -10,6 +10,17 @@ from yade_scripts.runner.rows import failure, summary
 
 SWEEP = "from yade_scripts import collide\ncollide(velocity=30, radius=4, duration=1e-9, threads=2, folder='my runs')"
 
+PAIR = """
+import contact_law
+from yade import *
+
+ice = O.materials.append(JKRMat(young=7e9, poisson=0.25, density=1000, surfaceEnergy=0.1, criticalRolling=0.8e-9))
+O.bodies.append([utils.sphere((x, 0, 0), 1e-7, material=ice) for x in (0, 3e-7)])
+O.engines, O.dt = [JKRWadaEngine(subSteps=2)], 1e-11
+O.step()
+print("threads", O.engines[0].statistics()["threads"])
+"""
+
 
 @pytest.fixture
 def foreign(tmp_path):
@@ -45,3 +56,10 @@ def test_a_run_that_ends_by_an_exception_is_named_with_it_and_its_log(tmp_path):
     log = tmp_path / "a.log"
     log.write_text("Traceback (most recent call last):\n  ...\nModuleNotFoundError: No module named 'x'\n" + summary(1))
     assert failure(log, "runs/a") == f"runs/a: ModuleNotFoundError: No module named 'x' (all of it in {log})"
+
+
+def test_the_engine_of_a_script_has_the_threads_that_yade_was_started_with(tmp_path):
+    (tmp_path / "pair.py").write_text(f"import sys\nsys.path.insert(0, {TOP!r})\n{PAIR}")
+    for options, threads in ((), 1), (("-j2",), 2):
+        done = call(tmp_path, "yade", *options, "-n", "-x", "pair.py")
+        assert f"threads {threads}\n" in done.stdout, done.stderr
