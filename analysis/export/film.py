@@ -45,7 +45,7 @@ def write_film(run, file, frames_per_second=10, width=960, along="z", colour="ag
     view = (view[0] - more, view[1] + more, *view[2:])
     of, way = Range(run), COLOURINGS[colour]
     frames = (
-        _frame(exported, axes, way.colours(exported, of), way.legend(of), view, pixel)
+        _frame(exported, axes, way.colours(exported, of), way.legend(of), view, pixel, _grains(run.parameters))
         for exported in progress(exported_states(run), "drawing frames", len(run.states))
     )
     with replacing(file, ending=file.suffix) as part:
@@ -68,7 +68,13 @@ def _view(run, axes):
     return middle[0] - half[0], middle[0] + half[0], middle[1] - half[1], middle[1] + half[1]
 
 
-def _frame(exported, axes, colours, legend, view, pixel):
+def _grains(parameters):
+    """'ice, γ = 0.1 J/m²' of what a run's parameters say of its grains."""
+    material, energy = str(parameters.get("material", "")), parameters.get("surfaceEnergy")
+    return material if energy is None or "," in material else f"{material}, γ = {energy:g} J/m²"
+
+
+def _frame(exported, axes, colours, legend, view, pixel, grains):
     """RGB bytes (H, W, 3) of a state, H and W even, as the encoder wants them."""
     state = exported.state
     position = exported.inside()[:, axes] * (1, 1, -1 if axes[2] == 1 else 1)  # to the right, up, towards the viewer
@@ -78,6 +84,7 @@ def _frame(exported, axes, colours, legend, view, pixel):
     picture = Image.fromarray(np.round(255 * image).astype(np.uint8))
     canvas = ImageDraw.Draw(picture)
     canvas.text((12, 10), f"t = {state.time * NANO:.1f} ns", fill=_INK, font=_font())
+    canvas.text((12, 36), grains, fill=_INK, font=_font(16))
     _draw_legend(canvas, legend, 12, picture.height - 28)
     _draw_length(canvas, pixel, picture.width - 12, 16)
     return np.asarray(picture)

@@ -88,7 +88,8 @@ def run_title(run, addition=None):
     parts = []
     for name, text in known.items():
         value = run.parameters.get(name)
-        if isinstance(value, (int, float)) and (value or name != "impact"):
+        several = name == "surfaceEnergy" and "," in str(run.parameters.get("material"))  # each with its own
+        if isinstance(value, (int, float)) and (value or name != "impact") and not several:
             parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
     return ", ".join(parts + [addition] * bool(addition))
 
