@@ -12,7 +12,7 @@ import ctypes
 import os
 import sys
 
-from .scene import give_way, restore_forces, show_contacts, sinter, snapshot
+from .scene import count_work_once, give_way, restore_forces, show_contacts, sinter, snapshot
 
 CLASSES = [
     "JKRMat",
@@ -113,6 +113,7 @@ def _start():
         _rebuild_dispatchers(yade)
     _publish(yade)
     give_way(yade)
+    count_work_once(yade)
     restore_forces(yade)
     show_contacts(yade, vars(sys.modules["__main__"]))
     words = _text("contact_law_channels").split()

@@ -139,6 +139,18 @@ def give_way(yade):
     yade.wrapper.Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
 
 
+def count_work_once(yade):
+    """O.energy.total() leaves out coarser counts, by YADE's own engines, of work that is in the law's channels too."""
+    total = yade.wrapper.EnergyTracker.total
+
+    def counted_once(energy):
+        values = dict(energy.items())
+        coarser = {"velGradWork": "boundaryWork", "gravWork": "externalWork"}
+        return total(energy) - sum(values.get(name, 0) for name, own in coarser.items() if values.get(own))
+
+    yade.wrapper.EnergyTracker.total = counted_once
+
+
 def restore_forces(yade):
     """O.load and the like bring permanent forces back, which YADE does not save and the engine does."""
 
