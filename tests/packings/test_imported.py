@@ -94,6 +94,7 @@ FORMATS = {
     + "\nVelocities\n\n1 0 0 0 0 0 0\n",
     "LAMMPS dump": lambda t: rows(t, DUMP + "ITEM: ATOMS id type xu yu zu radius\n", "{i} 1 {}"),
     "LAMMPS dump, scaled": lambda t: wrapped(t, "{i} 1 {}", "id type xs ys zs radius ix iy iz", scaled=True),
+    "LAMMPS dump, not wrapped": lambda t: rows(t, DUMP + "ITEM: ATOMS id ix iy iz xu yu zu radius\n", "{i} 1 2 3 {}"),
     "LAMMPS dump, first frame empty": lambda t: DUMP.format(n=0)
     + "ITEM: ATOMS id x y z radius\n"
     + rows(t, DUMP + "ITEM: ATOMS id x y z radius\n", "{i} {}"),

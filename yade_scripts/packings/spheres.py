@@ -172,9 +172,8 @@ def _of_text(text, names):
     if names is None:
         raise ValueError(f"{table.kind}, columns without a name; must be named, as in names=-,x,y,z,-,radius")
     found = _columns(names)
-    rows = [line for line in lines[table.first :] if line.strip() and not line.lstrip().startswith(COMMENT)][
-        : table.rows
-    ]
+    is_row = lambda line: line.strip() and not line.lstrip().startswith(COMMENT)
+    rows = list(filter(is_row, lines[table.first :]))[: table.rows]
     if len(rows) < (table.rows or 1):
         raise ValueError(f"{len(rows)} rows of numbers; must be {table.rows or '2 or more'}")
     rows = [FORTRAN.sub("e", line.replace(",", ".") if table.separator == ";" else line) for line in rows]
@@ -182,11 +181,8 @@ def _of_text(text, names):
         array = np.loadtxt(rows, delimiter=table.separator, usecols=tuple(found.values()), ndmin=2, quotechar='"')
     except ValueError as error:
         raise ValueError(f"not a table of numbers ({error})") from None
-    by_name = dict(zip(found, array.T))
-    of_columns = _unit([unit for _, unit in map(_parted, (names[column] for column in found.values()))])
-    if table.unit and of_columns and table.unit != of_columns:
-        raise ValueError(f"names two units, {table.unit} and {of_columns}; must be in one")
-    return _spheres(table.kind, by_name, unit=of_columns or table.unit, box=table.box, scaled=table.scaled)
+    unit = _unit([table.unit, *(_parted(names[column])[1] for column in found.values())])
+    return _spheres(table.kind, dict(zip(found, array.T)), unit=unit, box=table.box, scaled=table.scaled)
 
 
 def _find_table(lines):
@@ -232,14 +228,20 @@ def _dump(lines):
     if not frames:
         raise ValueError("no ITEM: ATOMS; must have one")
     rows = _count(lines, items["NUMBER OF ATOMS"][-1] + 1) if "NUMBER OF ATOMS" in items else None
-    names, scaled = lines[frames[-1]].split()[2:], False
-    if not {"x", "xu"} & set(names):  # xs, xsu: of the box
-        names, scaled = [re.sub(r"^([xyz])s(u?)$", r"\1\2", name) for name in names], True
+    names = lines[frames[-1]].split()[2:]
+    scaled = not {"x", "xu"} & set(names)  # xs, xsu: of the box
+    if scaled:
+        names = [re.sub(r"^([xyz])s(u?)$", r"\1\2", name) for name in names]
+    unwrapped = "xu" in names
+    if unwrapped:
+        names = ["-" if name in ("ix", "iy", "iz") else name for name in names]
     unit = LAMMPS_UNITS.get(lines[items["UNITS"][0] + 1].strip()) if "UNITS" in items else None
     at = items.get("BOX BOUNDS", [None])[-1]
-    box = None if at is None else _box([line.split()[:3] for line in lines[at + 1 : at + 4]], lines[at].split()[-3:])
+    box = None
+    if at is not None and (scaled or not unwrapped):
+        box = _box([line.split()[:3] for line in lines[at + 1 : at + 4]], lines[at].split()[-3:])
     if scaled and box is None:
-        raise ValueError("coordinates in units of its box, which is none along the axes; must be x y z or xu yu zu")
+        raise ValueError("coordinates in units of a box, and no box; must be x y z or xu yu zu")
     kind = f"LAMMPS dump, {_frames(frames)}"
     return Table(kind, frames[-1] + 1, rows, names, unit=unit, box=box, scaled=scaled)
 
@@ -261,14 +263,14 @@ def _data(lines, rows, section):
 
 
 def _box(bounds, boundaries):
-    """Box of texts low, high and maybe a tilt for each axis; None where it is tilted or not given."""
+    """Box of texts low, high and maybe a tilt for each axis; None where it is not given."""
     try:
         numbers = [[float(text) for text in bound] for bound in bounds]
         low, high = np.array([bound[:2] for bound in numbers]).T
     except ValueError:
         return None
     if any(tilt for bound in numbers for tilt in bound[2:]):
-        return None
+        raise ValueError("in a tilted box; must be in coordinates that go on beyond it, xu yu zu")
     return Box(low, high - low, np.array([text == "pp" for text in boundaries]))
 
 
