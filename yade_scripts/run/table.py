@@ -75,10 +75,12 @@ def write(path, rows, comment=""):
 
 def quoted(text):
     """A cell's text as it stands in a table; None where it cannot."""
+    if not text.isprintable():
+        return None
     if not re.search(r"[\s#]", text):
         return text
     mark = next((mark for mark in "\"'" if mark not in text), None)
-    return f"{mark}{text}{mark}" if mark and text.isprintable() else None
+    return mark and f"{mark}{text}{mark}"
 
 
 def _plain(cell):
