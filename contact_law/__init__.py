@@ -12,7 +12,7 @@ import ctypes
 import os
 import sys
 
-from .scene import count_work_once, give_way, restore_forces, show_contacts, sinter, snapshot
+from .scene import count_work_once, give_way, record, restore_forces, show_contacts, sinter, snapshot
 
 CLASSES = [
     "JKRMat",
@@ -24,11 +24,13 @@ CLASSES = [
     "JKRWadaEngine",
     "JKRWadaSnapshot",
 ]
-__all__ = [*CLASSES, "snapshot", "sinter"]
+__all__ = [*CLASSES, "snapshot", "sinter", "record"]
 
 TOP = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:
     __version__ = _file.read().strip()
+if TOP not in sys.path:  # with YADE_PREFIX; record() needs the other packages
+    sys.path.append(TOP)
 LIBRARY = os.path.join(TOP, f"build/lib/{os.uname().machine}-linux-gnu/yade-double/libcontact_law.so")
 
 

@@ -87,6 +87,54 @@ def sinter(neck):
     raise RuntimeError("sinter(): O.engines must have a JKRWadaEngine, or an InteractionLoop with this contact law")
 
 
+def record(
+    folder, every, series=None, states=10, parameters=None, aggregate=None, interval=300, overwrite=False, resume=False
+):
+    """Write a run folder while the script goes on, as collide.py does: for `python3 -m analysis` and analysis.table().
+
+    It comes after O.bodies and O.engines, and turns O.trackEnergy on. The run ends with the script. One that was
+    stopped (Ctrl-C, SIGTERM, kill) goes on with resume=True, the fused engine to the same bits, YADE's own loop to
+    rounding: the script builds its scene again, record() puts that of the last checkpoint in its place (with new
+    objects: O.bodies[0], O.engines[1]), and the script goes on from O.iter, as by O.run(10000 - O.iter, True).
+
+    Parameters
+    ----------
+    folder : str
+        A new folder.
+    every : int
+        O.steps between two rows of the history: energies, contacts, and the script's series. With the functors a row
+        is of the beginning of a step.
+    series : function, optional
+        Returns {name: number} for each row, always of the same names.
+    states : int
+        Rows between two saved states; the first and the last row have one too.
+    parameters : dict, optional
+        {name: number or text} by which runs are compared: columns of analysis.table().
+    aggregate : function, optional
+        Of a body: the number of its aggregate, from 0, by which grains are coloured.
+    interval : float
+        Seconds of wall time between two checkpoints.
+    overwrite, resume : bool
+        Whether an earlier run in the folder is replaced, or goes on where it has a checkpoint.
+
+    Returns
+    -------
+    yade_scripts.run.recording.Recording
+        end() ends the run before the script does; another record() does so too.
+
+    Raises
+    ------
+    ValueError, TypeError, yade_scripts.parameters.InputError
+        For wrong arguments, and for a folder that holds something else.
+    """
+    from yade_scripts.run import recorder, recording
+
+    if isinstance(recorder.current, recording.Recording):
+        recorder.current.end()
+    given = folder, every, series, states, parameters, aggregate, interval, overwrite, resume
+    return recording.Recording(*given)
+
+
 # ---- YADE's own calls ----
 
 # Of yade.utils: they read O.interactions or O.forces, which the fused engine leaves empty.

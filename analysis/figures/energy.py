@@ -6,6 +6,7 @@ from ..measures.periodic_cell import AVERAGED, pressure_over, work_on_boundaries
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, CHANNELS, COLOURS, HISTORY_FILE, LABELS, WORK
 from ..runs.ledger import closure, closure_history, fractions
+from ..runs.measured import unit_of
 from ..theory.aggregates import bcca_coordination, compressive_strength, compressive_strength_dense, strength_scale
 from .style import NANO, OURS, PAPER, legend, letter, new_figure, panels, run_title, styled
 
@@ -13,23 +14,22 @@ from .style import NANO, OURS, PAPER, legend, letter, new_figure, panels, run_ti
 @styled
 def energy_figure(run):
     """Figure of all channels as fractions of K(0): changes since the start (the kinetic channel itself), so that their
-    sum is 1.
+    sum is 1. Of a script's own run they are fractions of its largest change.
 
     Positive fractions are stacked upward from 0 and negative ones downward; the line is the sum. Below, the ledger's
-    error. RunFolderError without kinetic energy at the start.
+    error. RunFolderError where the unit is 0.
     """
-    parts = fractions(run.history)
+    unit, name = unit_of(run)
+    parts = fractions(run.history, unit)
     if parts is None:
-        raise RunFolderError(
-            f"{run.path / HISTORY_FILE}: no kinetic energy at the start, so fractions of it are undefined"
-        )
+        raise RunFolderError(f"{run.path / HISTORY_FILE}: {name} is 0, so fractions of it are undefined")
     time = run.history["time"] * NANO
     figure = new_figure(10.0, 6.6, constrained_layout=True)
     upper, lower = figure.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": (5, 1)})
     _stack(upper, time, parts)
     upper.plot(time, sum(parts[name] for name in CHANNELS), color="black", label="sum of all channels")
     upper.axhline(0.0, color="black", linewidth=0.7)
-    upper.set_ylabel("fraction of the initial kinetic energy")
+    upper.set_ylabel(f"fraction of {name.replace('K(0)', 'the initial kinetic energy')}")
     upper.set_title(run_title(run), loc="right", fontsize=10, color="0.3")
     values = np.array(list(parts.values()))
     top, bottom = np.maximum(values, 0.0).sum(axis=0).max(), np.minimum(values, 0.0).sum(axis=0).min()
@@ -38,7 +38,7 @@ def energy_figure(run):
     title = "change since the start, at the end\n(kinetic: what is left)"
     place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "frameon": False}
     upper.legend(handles[::-1], labels[::-1], title=title, title_fontsize=10, alignment="left", **place)
-    _draw_error(lower, time, run.history)
+    _draw_error(lower, time, run.history, unit, name)
     lower.set_xlim(time[0], time[-1] if time.size > 1 else time[0] + 1.0)
     return figure
 
@@ -55,14 +55,14 @@ def _stack(axes, time, parts):
             base = base + height
 
 
-def _draw_error(axes, time, history):
-    error, largest = closure_history(history), closure(history)
+def _draw_error(axes, time, history, unit, name):
+    error, largest = closure_history(history, unit), closure(history, unit)
     exponent = int(np.floor(np.log10(largest))) if largest > 0 else 0
     axes.plot(time, error / 10.0**exponent, color="black", linewidth=1.2)
     axes.axhline(0.0, color="0.6", linewidth=0.7)
     axes.set_ylabel("sum $-$ 1" + (f"\n[$10^{{{exponent}}}$]" if exponent else ""))
     axes.set_xlabel("time $t$  [ns]")
-    text = f"largest error of the ledger:\n{largest:.2g} of K(0)"
+    text = f"largest error of the ledger:\n{largest:.2g} of {name}"
     axes.text(1.02, 0.5, text, transform=axes.transAxes, va="center", fontsize=10)
 
 

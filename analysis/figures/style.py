@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from PIL import Image  # with which matplotlib itself writes PNGs
 
 from ..runs.files import replacing
+from ..runs.format import COLLISION
 
 NANO = 1e9
 OURS, PAPER = "#111111", "#7b3fa0"  # the colours of what is ours and what is a paper's
@@ -80,7 +81,7 @@ def run_title(run, addition=None):
     known = {
         "filling": "filling {}",
         "radius": "aggregate radius {} $r$",
-        "grains": "{} grains per aggregate",
+        "grains": "{} grains" + " per aggregate" * (run.kind is COLLISION),
         "velocity": "{} m/s",
         "impact": "impact {}",
         "surfaceEnergy": "$\\gamma$ = {} J/m²",

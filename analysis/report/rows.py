@@ -18,7 +18,7 @@ from ..runs.files import RunFolderError
 from ..runs.folder import WIDTH, RunFolder, open_run, settings
 from ..runs.format import BONDS, CHANNEL_TABLE, CHANNELS, COLLISION, COMPRESSION, PARAMETER_UNITS, RUN_KINDS
 from ..runs.ledger import closure, fractions_at, initial_kinetic_energy, largest_work, released_before, work_closure
-from ..runs.measured import are_equal, maximum_of_run, met, outcome_of_run, time_of_touch
+from ..runs.measured import are_equal, maximum_of_run, met, outcome_of_run, time_of_touch, unit_of
 from ..runs.pieces import STRUCTURE, structure_of
 from ..runs.table import FOLDER, RUN, Column, described, make_table
 
@@ -49,7 +49,9 @@ OF_STRETCHING = (
     Column("tensile_filling", "1", "filling factor there"),
 )
 ENERGIES = (
-    Column("energy_closure", "1", "max |E(t) - E(0)|/K(0); of a compression over the boundaries' largest work"),
+    Column(
+        "energy_closure", "1", "max |E(t) - E(0)|/K(0); else over the largest work of boundaries, or largest change"
+    ),
     Column("initial_kinetic_energy", "J", "K(0)"),
     *(Column(channel.name, "J", f"{channel.label}, at the end") for channel in CHANNEL_TABLE),
 )
@@ -101,7 +103,7 @@ def summarise(run):
         strength, filling = tensile_strength(history, AVERAGED * run.derived["timeUnit"])
         if np.isfinite(strength):
             numbers.update(tensile_strength=strength, tensile_filling=filling)
-    numbers["energy_closure"] = work_closure(history) if compression else closure(history)
+    numbers["energy_closure"] = work_closure(history) if compression else closure(history, unit_of(run)[0])
     numbers["initial_kinetic_energy"] = initial_kinetic_energy(history)
     numbers.update({name: float(history[name][-1]) for name in CHANNELS})
     return numbers
@@ -251,11 +253,11 @@ def differing(found, names, must):
 
 
 def _changes(run):
-    """{channel: change from the start to the end} over K(0), or over a compression's largest work; None without
+    """{channel: change from the start to the end} over unit_of(run), or over a compression's largest work; None without
     either."""
     history = run.history
     if run.kind is not COMPRESSION:
-        return fractions_at(history, history["time"][-1]) or dict.fromkeys(CHANNELS)
+        return fractions_at(history, history["time"][-1], unit_of(run)[0]) or dict.fromkeys(CHANNELS)
     work = largest_work(history)
     return {c: (history[c][-1] - history[c][0]) / work if work > 0 else None for c in CHANNELS}
 
@@ -320,7 +322,7 @@ def long_text(run, row):
         lines.append(f"  {column.name:<24}{_number(row[column.name], column.unit):<16} {column.meaning}".rstrip())
     if (row.get("released") or 0.0) > NOTICED:
         lines.append(f"  {_release(row['released'])}")
-    lines.append(f"\n  {'energy':<28}{'at the end [J]':>14}{'change':>12} (of K(0), or a compression's largest work W)")
+    lines.append(f"\n  {'energy':<28}{'at the end [J]':>14}{'change':>12} (of {unit_of(run)[1]})")
     for channel in CHANNEL_TABLE:
         change = row[at_end(channel.name)]
         lines.append(

@@ -9,6 +9,7 @@ from ..arrays import numbers
 from ..measures.periodic_cell import work_on_boundaries
 from .format import CHANNELS, STORED_CHANNELS
 
+ROUNDING = 1e-12  # of the largest energy
 # A22's five ways to lose energy; connection and disconnection together are its E_dis,c.
 WAYS = {
     "rolling": ["rollingDissipation"],
@@ -34,17 +35,24 @@ def initial_kinetic_energy(history):
     return float(history["kinetic"][0])
 
 
-def closure_history(history):
-    """[E(t) - E(0)]/K(0) (T,), 0 at all times for an exact ledger; None where K(0) = 0."""
-    unit = initial_kinetic_energy(history)
+def largest_change(history):
+    """Largest |E_c(t) - E_c(0)| [J] of any channel c: the unit for a script's own run, which may start at rest; 0 where
+    there is nothing but rounding."""
+    change = float(max(np.abs(history[name] - history[name][0]).max() for name in CHANNELS))
+    return change if change > ROUNDING * max(np.abs(history[name]).max() for name in CHANNELS) else 0.0
+
+
+def closure_history(history, unit=None):
+    """[E(t) - E(0)] over a unit [J] (K(0) if left out) (T,), 0 at all times for an exact ledger; None where that
+    is 0."""
+    unit = initial_kinetic_energy(history) if unit is None else unit
     total = total_energy(history)
     return (total - total[0]) / unit if unit > 0 else None
 
 
-def closure(history):
-    """Largest |E(t) - E(0)|/K(0) of a history; None where K(0) = 0. Of a compression, which starts almost at rest, it
-    is work_closure()."""
-    error = closure_history(history)
+def closure(history, unit=None):
+    """Largest |closure_history()|. Of a compression, which starts almost at rest, it is work_closure()."""
+    error = closure_history(history, unit)
     return None if error is None else float(np.abs(error).max())
 
 
@@ -69,19 +77,19 @@ def released_before(history, time):
     return float((stored[0] - stored.min()) / unit) if len(stored) else 0.0
 
 
-def fractions(history):
-    """Change of every channel since the start over K(0), by name, each (T,); the kinetic channel itself over K(0), so
-    that the fractions add up to 1 at all times. None where K(0) = 0."""
-    unit = initial_kinetic_energy(history)
+def fractions(history, unit=None):
+    """Change of every channel since the start over a unit [J] (K(0) if left out), by name, each (T,); of the kinetic
+    channel itself, so that fractions of K(0) add up to 1 at all times. None where the unit is 0."""
+    unit = initial_kinetic_energy(history) if unit is None else unit
     if not unit > 0:
         return None
     return {name: (history[name] - (0.0 if name == "kinetic" else history[name][0])) / unit for name in CHANNELS}
 
 
-def fractions_at(history, time):
-    """fractions() at one time [s] within the record, linear between samples: a dict of floats, None where K(0) = 0."""
+def fractions_at(history, time, unit=None):
+    """fractions() at one time [s] within the record, linear between samples: a dict of floats, or None."""
     first, last = history["time"][0], history["time"][-1]
     if not first <= time <= last:
         raise ValueError(f"time = {time}: must be within the record, {first:g} to {last:g} s")
-    parts = fractions(history)
+    parts = fractions(history, unit)
     return None if parts is None else {c: float(np.interp(time, history["time"], part)) for c, part in parts.items()}

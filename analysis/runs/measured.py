@@ -8,7 +8,8 @@ from ..measures.fragments import belongs_to_an_aggregate, grain_masses
 from ..measures.outcome import collision_outcome
 from ..measures.plate import has_plate, plate_outcome, why_undecided_on_plate
 from .files import RunFolderError
-from .format import STATES_FOLDER
+from .format import COLLISION, COMPRESSION, STATES_FOLDER
+from .ledger import initial_kinetic_energy, largest_change, largest_work
 
 UNLIKE = 0.05  # of the heavier aggregate's mass: with a larger difference the plane x = 0 is not where they meet
 
@@ -69,6 +70,15 @@ def outcome_of_run(run):
         counted = belongs_to_an_aggregate(start.aggregate, start.contact_pairs, grain_masses(vars(start)))
         why = why_undecided(found.kind, counted, vars(end), run.derived, touch, recent)
     return found.if_decided(why)
+
+
+def unit_of(run):
+    """(energy [J], its name) over which the energies of a RunFolder's ledger are given."""
+    if run.kind is COMPRESSION:
+        return largest_work(run.history), "the boundaries' largest work"
+    if run.kind is COLLISION:
+        return initial_kinetic_energy(run.history), "K(0)"
+    return largest_change(run.history), "the largest change of a channel"
 
 
 def derived_constants(run, *names):
