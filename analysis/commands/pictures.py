@@ -16,8 +16,8 @@ def add_parsers(commands):
     about = "Write the figures that a run of its kind has as NAME.png, and print their paths."
     _of_one_run(commands, figures, "draw a run's figures", about, "FOLDER", "RUN/figures")
     about = "Write the saved states as one HTML file for a browser: turn, zoom, go through the states, colour by "
-    about += "aggregate, contacts, speed, fragment or sintered bonds. It needs no network. Made with three.js (Debian: "
-    about += "libjs-three)."
+    about += "aggregate, material, contacts, speed, fragment or sintered bonds. RUN may be FILE.npz, a packing or a "
+    about += "saved state. It needs no network. Made with three.js (Debian: libjs-three)."
     short = "write a page on which the aggregates can be turned"
     parser = _of_one_run(commands, view, short, about, "FILE", "RUN/view.html", type=with_ending(".html"))
     parser.add_argument("--three", metavar="FOLDER", help="three.js, r110 to r147 (default: Debian's)")
@@ -54,11 +54,21 @@ def figures(options):
 
 def view(options):
     from ..export.viewer import THREE, write_view
-    from ..runs.folder import open_run
 
-    folder = open_run(options.run)
-    print(printable(write_view(folder, options.out or folder.path / "view.html", options.three or THREE)))
+    run, place = _run_or_file(options.run, "view", ".html")
+    print(printable(write_view(run, options.out or place, options.three or THREE)))
     return 0
+
+
+def _run_or_file(path, name, ending=""):
+    """The RunFolder of a run, or of a packing or state (.npz) alone; and where NAME is written if nothing else is
+    given."""
+    from ..runs.folder import open_alone, open_run
+
+    path = Path(path)
+    if path.is_file() and path.suffix == ".npz":
+        return open_alone(path), path.with_name(f"{path.stem}-{name}{ending}")
+    return open_run(path), path / f"{name}{ending}"
 
 
 def film(options):
@@ -141,10 +151,9 @@ def _add_export(commands):
 
 def export(options):
     from ..export.formats import write_vtk, write_xyz
-    from ..runs.folder import open_run
 
     writers = dict(zip(FORMATS, (write_vtk, write_xyz)))
-    folder = open_run(options.run)
+    run, place = _run_or_file(options.run, "export")
     for name in FORMATS if options.format == "all" else (options.format,):
-        print(printable(writers[name](folder, options.out or folder.path / "export")), flush=True)
+        print(printable(writers[name](run, options.out or place)), flush=True)
     return 0

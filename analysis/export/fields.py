@@ -104,7 +104,7 @@ CONTACTS = (
 
 def grain_fields(exported):
     """{name: array} of the grains, without `mass` if the run has no density, and `material` if it has one."""
-    missing = {"mass"} if exported.density is None else set()
+    missing = {"mass"} if exported.density is None and exported.state.mass is None else set()
     missing |= {"material"} if exported.state.material is None else set()
     return {field.name: field.values(exported) for field in GRAINS if field.name not in missing}
 

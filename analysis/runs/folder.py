@@ -3,9 +3,11 @@
 Folders of every format in READABLE are read; what an older one lacks is filled in (runs.format says with what).
 Whatever is missing, damaged or foreign raises RunFolderError: one line that names the file and says what is wrong."""
 
+import json
 import re
 import textwrap
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -184,6 +186,50 @@ def open_run(path):
         states=StateSequence(state_files(path, sums), kind, file_format, sums),
         ended=sums is not None,
     )
+
+
+ALONE = RunKind("grains", ())  # without a run
+
+
+def open_alone(file):
+    """A RunFolder of one state, without a history: a saved state, with the parameters of the run that it is in, or a
+    packing that make_packing.py wrote (at rest, in contact where grains overlap). RunFolderError for other files."""
+    file, about = Path(file), {"parameters": {}, "derived": {}}
+    if "contact_pairs" in array_names(file):
+        state = read_state(file, ALONE)
+        with suppress(RunFolderError):
+            about = read_record(file.absolute().parent.parent)[0]
+    else:
+        state, about["parameters"] = _packing(file)
+    return RunFolder(file, ALONE, about["parameters"], about["derived"], about, {}, (state,), ended=True)
+
+
+def _packing(file):
+    """(State, parameters) of a packing's file."""
+    from scipy.spatial import cKDTree
+
+    names = "position", "radius", "material"
+    found = read_quantities(file, [quantity for quantity in STATE if quantity.name in names], READABLE[-1])
+    position, radius, grains = found["position"], found["radius"], len(found["radius"])
+    pairs = cKDTree(position).query_pairs(2 * radius.max(initial=0.0), output_type="ndarray")
+    gaps = np.linalg.norm(np.diff(position[pairs], axis=1)[:, 0], axis=1) - radius[pairs].sum(axis=1)
+    found["contact_pairs"] = pairs[gaps <= 0]
+    moving, numbers = np.zeros((grains, 3)), len(found["contact_pairs"])
+    state = State(
+        **{"velocity": moving, "angular_velocity": moving, "aggregate": np.zeros(grains, dtype=int), **found},
+        contact_normal_force=np.zeros(numbers),
+        contact_bonded=np.zeros(numbers, dtype=bool),
+    )
+    parameters = {"grains": grains}
+    with suppress(RunFolderError, ValueError):
+        parameters |= json.loads(read_arrays(file, (), texts=("parameters",))["parameters"])
+    if state.material is not None:
+        materials = parameters.get("materials", [])
+        parameters["material"] = ",".join(str(material["name"]) for material in materials)
+        if len(materials) > state.material.max():
+            density = np.array([float(material["density"]) for material in materials])[state.material]
+            state.mass = 4 / 3 * np.pi * density * radius**3
+    return state, parameters
 
 
 def read_ended(path):

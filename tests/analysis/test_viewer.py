@@ -9,11 +9,11 @@ import shutil
 import numpy as np
 import pytest
 from PIL import Image
-from written_runs import RADIUS, two_clusters
+from written_runs import RADIUS, losing, record, state_arrays, two_clusters, write_run
 
 from analysis.__main__ import main
 from analysis.export.viewer import THREE
-from analysis.runs.folder import open_run
+from analysis.runs.folder import open_alone, open_run
 
 pytestmark = pytest.mark.skipif(not THREE.exists(), reason="libjs-three is not installed")
 webdriver = pytest.importorskip("selenium.webdriver") if shutil.which("chromedriver") else None
@@ -31,6 +31,29 @@ def test_the_page_holds_the_states_and_reaches_for_nothing(tmp_path):
         position = np.frombuffer(base64.b64decode(packed["position"]), dtype="<f4").reshape(-1, 3)
         assert np.allclose(position * RADIUS + middle, state.position, atol=1e-5 * RADIUS)
     assert not re.search(r'<(script|link|img)[^>]*(src|href)="', page) and "<b>x" not in page
+
+
+def test_a_packing_and_a_state_alone_are_shown(tmp_path):
+    """By material where there are several; a state has the names of its run, a packing its own."""
+    pairs, x = [(0, 1)], np.array([[0, 0, 0], [1.99, 0, 0], [5, 0, 0]]) * RADIUS
+    of_grains = {"material": np.array([0, 1, 1]), "mass": np.array([1.0, 2, 2])}
+    about = {**record(1e-6), "parameters": {"material": "ice,sand"}}
+    run = write_run(
+        tmp_path / "run", about, losing(np.ones(1)), [{**state_arrays(0, x, 0 * x, [0, 0, 0], pairs), **of_grains}]
+    )
+    materials = [{"name": name, "density": density} for name, density in (("ice", 1e3), ("sand", 2e3))]
+    packing = tmp_path / "a.npz"
+    text = json.dumps({"materials": materials})
+    np.savez(packing, position=x, radius=np.full(3, RADIUS), material=of_grains["material"], seed=1, parameters=text)
+    for file in (run / "states/000000.npz", packing):
+        assert main(["view", str(file)]) == 0
+        page = (file.parent / f"{file.stem}-view.html").read_text()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+        assert 'value="material" selected' in page
+        assert [entry["text"] for entry in data["legends"]["material"]] == ["ice", "sand"]
+        assert np.frombuffer(base64.b64decode(data["states"][0]["first"]), dtype="<u4").tolist() == [0]
+    assert open_alone(packing).start.mass == pytest.approx(4 / 3 * np.pi * RADIUS**3 * np.array([1e3, 2e3, 2e3]))
+    assert main(["view", str(run / "history.npz")]) == 2
 
 
 @pytest.fixture

@@ -33,7 +33,12 @@ def write_view(run, file, three=THREE):
     write_file(
         file,
         page.render(
-            title=printable(run.path.resolve().name), ways=COLOURINGS, scripts=scripts, data=data, viewer=viewer
+            title=printable(run.path.resolve().name),
+            ways=COLOURINGS,
+            chosen=_first_colouring(run.start),
+            scripts=scripts,
+            data=data,
+            viewer=viewer,
         ),
     )
     return file
@@ -45,6 +50,12 @@ def _scripts(three):
     except OSError as error:
         need = "three.js must be there (apt-get install libjs-three, or --three FOLDER)"
         raise Refused(f"{error.filename}: {error.strerror}; {need}") from None
+
+
+def _first_colouring(state):
+    """That by aggregate, and by material where there is one aggregate of several."""
+    several = state.material is not None and np.ptp(state.material) > 0 and np.ptp(state.aggregate) == 0
+    return "material" if several else "aggregate"
 
 
 def _data(run):
