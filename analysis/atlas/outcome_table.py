@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
+from ..arrays import numbers
 from ..printable import Refused, suggested
 from ..runs.files import write_file
 from .rules import KINDS, OF_KIND
@@ -87,7 +88,7 @@ class OutcomeTable:
         wanted = tuple(dict.fromkeys((*(self.columns if columns is None else columns), INSIDE)))
         if unknown := [name for name in wanted if name not in self.columns]:
             raise ValueError(f"table of outcomes: no column {unknown[0]}{suggested(unknown[0], self.columns)}")
-        given = np.broadcast_arrays(*(np.asarray(query[name], dtype=float) for name in names))
+        given = np.broadcast_arrays(*(numbers(name, query[name], gaps=True) for name in names))
         places = np.stack([axis.position(value) for axis, value in zip(self.axes, given)], axis=-1)
         values = self.values[..., [self.columns.index(name) for name in wanted]]
         found = RegularGridInterpolator([np.arange(n) for n in values.shape[:-1]], values)(places)
