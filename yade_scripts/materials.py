@@ -1,6 +1,5 @@
 """The materials of the papers and of one's own, and the grains of a run: SI units, with sources."""
 
-import tomllib
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 
@@ -134,6 +133,8 @@ def known_materials(file=None):
 
 
 def _materials_in(file):
+    import tomllib  # which Python 3.10 lacks
+
     try:
         with open(file, "rb") as opened:
             sections = tomllib.load(opened)
