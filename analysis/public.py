@@ -7,6 +7,7 @@ from .measures.compression import compression_and_velocity, maximum_compression
 from .measures.fragments import cumulative_cross_section, cumulative_grains, fragment_labels, fragment_masses
 from .measures.fragments import fragment_sizes, growth_efficiency
 from .runs.ledger import closure, fractions_at, total_energy
+from .measures.conduction import conductivity
 from .measures.structure import correlation_dimension, filling_factor, grains_within, gyration_radius
 from .measures.structure import inner_coordination, mean_coordination
 from .report.rows import summarise, table

@@ -76,6 +76,12 @@ def tensile_strength(filling, surface_energy, grain_radius):
     return scale * np.asarray(filling, dtype=float) ** 1.8
 
 
+def conductivity(filling, contact_radius, grain_radius):
+    """k/k_mat = 2 (a_c/r) phi^((1 + alpha)/(3 - D)) of compressed BCCA clusters, D = 1.88 and alpha = 1.34: Arakawa et
+    al. (2017, 2019), as others quote them."""
+    return 2.0 * contact_radius / grain_radius * np.asarray(filling, dtype=float) ** (2.34 / 1.12)
+
+
 def bcca_filling(grains):
     """phi_BCCA = (3/5)^(3/2) N^(-1/2) of a cluster of N grains: K13 eq 24."""
     return 0.6**1.5 * np.asarray(grains, dtype=float) ** -0.5

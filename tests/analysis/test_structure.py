@@ -7,6 +7,7 @@ import pytest
 from written_runs import cubic_lattice
 
 from analysis.arrays import numbers, pairs
+from analysis.measures.conduction import conductivity
 from analysis.measures.network import loops, spanned_axes
 from analysis.measures.structure import fractal_dimension, grains_within, zone_filling
 
@@ -91,3 +92,29 @@ def test_arrays_of_numbers_and_pairs_are_converted_or_refused_by_name():
     for wrong in ([[0, 5]], [[-1, 0]], [[0.5, 1]], [[0, 1, 2]]):
         with pytest.raises(ValueError, match="^contact_pairs: "):
             pairs("contact_pairs", wrong, 5)
+
+
+# ---- conduction of heat ----
+
+
+def test_a_chain_of_unequal_contacts_conducts_as_resistors_in_series():
+    """And no heat crosses where nothing leads through the cell; grains beside the way change nothing."""
+    chain = np.array([[0.0, 0, 0], [1.9, 0.3, 0], [4.0, 0, 0.2], [1.9, 2.2, 0]])
+    radii = np.array([0.1, 0.3, 0.2, 0.4])
+    found = conductivity(chain, [[0, 1], [1, 2], [2, 0], [1, 3]], radii, [6.0, 5.0, 8.0])
+    through = 1 / np.sum(1 / (2 * radii[:3]))
+    assert found == pytest.approx([through * 6.0 / 40.0, 0, 0], rel=1e-12, abs=1e-15)
+
+
+def test_a_cubic_lattice_conducts_as_its_closed_form_and_not_without_a_layer():
+    """k = H/d along each axis, also with grains moved off their sites, which changes no contact."""
+    side, d = 4, 2.0
+    number = np.arange(side**3).reshape(3 * (side,))
+    pairs = np.concatenate([np.stack([number, np.roll(number, -1, axis)], -1).reshape(-1, 2) for axis in range(3)])
+    position = d * np.stack(np.meshgrid(*3 * [np.arange(side)], indexing="ij"), -1).reshape(-1, 3)
+    moved = position + np.random.default_rng(1).normal(size=position.shape) * 0.2
+    for place in (position, moved):
+        assert conductivity(place, pairs, np.full(len(pairs), 0.1), 3 * [side * d]) == pytest.approx(0.2 / d, rel=1e-12)
+    kept = pairs[~((pairs[:, 0] // side**2 == 3) & (pairs[:, 1] // side**2 == 0))]  # without contacts across one plane
+    found = conductivity(position, kept, np.full(len(kept), 0.1), 3 * [side * d])
+    assert found == pytest.approx([0, 0.2 / d, 0.2 / d], abs=1e-12)
