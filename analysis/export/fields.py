@@ -27,7 +27,9 @@ class Exported:
         self.state, self.density = state, density
         first, second = state.contact_pairs[:, 0], state.contact_pairs[:, 1]
         between = state.position[second] - state.position[first]
-        if state.cell_size is not None:
+        if state.cell_vectors is not None:
+            between = _within(between, state.cell_vectors, np.round)
+        elif state.cell_size is not None:
             between = nearest_image(between, state.cell_size)
         self.first, self.second, self.between = first, second, between  # (M,), (M,), (M, 3) [m]
         planes = state.plane_contacts
@@ -36,6 +38,8 @@ class Exported:
     def inside(self):
         """Positions (N, 3) [m]: in a periodic cell the images inside it."""
         state = self.state
+        if state.cell_vectors is not None:
+            return _within(state.position, state.cell_vectors, np.floor)
         return state.position if state.cell_size is None else state.position % state.cell_size
 
     def distance(self):
@@ -79,6 +83,11 @@ class Exported:
     def material(self):
         """(N,) int."""
         return np.zeros(len(self.state.radius), dtype=int) if self.state.material is None else self.state.material
+
+
+def _within(vectors, edges, whole):
+    """Vectors (N, 3) less whole numbers of the cell's edges, the columns of (3, 3): np.round or np.floor of theirs."""
+    return vectors - whole(vectors @ np.linalg.inv(edges).T) @ edges.T
 
 
 GRAINS = (

@@ -151,7 +151,8 @@ def _write_frame(out, exported):
     if state.cell_size is None:
         words.append('pbc="F F F"')
     else:
-        edges = " ".join(f"{number:.17g}" for number in np.diag(state.cell_size).ravel())
+        vectors = np.diag(state.cell_size) if state.cell_vectors is None else state.cell_vectors.T  # an edge a row
+        edges = " ".join(f"{number:.17g}" for number in vectors.ravel())
         across = () if state.plane_axis is None else state.plane_axis  # planes end the cell
         periodic = " ".join("F" if axis in across else "T" for axis in range(3))
         words += [f'Lattice="{edges}"', f'pbc="{periodic}"']

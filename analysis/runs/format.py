@@ -144,6 +144,7 @@ STATE = (
     Quantity("plane_contacts", ("K", 2), "", "rows of the grain and of the plane of a contact", "i", optional=True),
     Quantity("plane_contact_normal_force", ("K",), "N", "as contact_normal_force", optional=True),
     Quantity("cell_size", (3,), "m", "edges of the periodic cell", optional=True, positive=True),
+    Quantity("cell_vectors", (3, 3), "m", "of a sheared cell, its edges as columns", optional=True),
 )
 
 # Of a collision on a plate, d is the aggregate's radius less its mean distance.

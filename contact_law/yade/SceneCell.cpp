@@ -22,8 +22,11 @@ namespace {
 	void requireBox(const Cell& cell)
 	{
 		requireDiagonal(cell.hSize, "hSize", "a box along the axes (diagonal)");
-		requireDiagonal(cell.velGrad, "velGrad", "stretching along the axes (diagonal)");
-		requireDiagonal(cell.nextVelGrad, "velGrad", "stretching along the axes (diagonal)");
+		const char* stretching =
+		        "stretching along the axes (diagonal); for shear take YADE's own loop with this contact law, or grains "
+		        "between two plates that slide (utils.wall)";
+		requireDiagonal(cell.velGrad, "velGrad", stretching);
+		requireDiagonal(cell.nextVelGrad, "velGrad", stretching);
 	}
 
 	std::string sizeText(Real length) { return rounded(length, 6); }

@@ -79,6 +79,7 @@ CELLS = {
         "hSize has the element (0, 1) = 1e-08",
         "diagonal",
     ],
+    "O.cell.velGrad = Matrix3(0, 1e3, 0, 0, 0, 0, 0, 0, 0); O.step(); O.step()": ["YADE's own loop", "two plates"],
     "O.cell.setBox(1e-6, 5e-7, 1e-6)": ["cell of (1e-06, 5e-07, 1e-06) m is too small", "at least 5.6"],
     "O.run(3, True); O.cell.velGrad = shrinking(0.8); O.step()": [
         "by more than half the smallest radius in a small step"

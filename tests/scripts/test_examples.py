@@ -3,13 +3,17 @@
 import os
 import re
 
+import numpy as np
 import pytest
 from running import TOP, call, messages
 
+from analysis import open_run, table
+from analysis.export.fields import Exported
 
-def example(name):
+
+def example(name, *arguments):
     """What an example prints."""
-    done = call(TOP, "yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "examples", name))
+    done = call(TOP, "yade", "-n", "-x", os.path.join(TOP, "yade_scripts", "examples", name), *arguments)
     assert done.returncode == 0 and messages(done) == [], done.stderr
     return done.stdout
 
@@ -36,3 +40,23 @@ def test_the_shrinking_cell_has_a_rising_pressure():
     assert len(filling) == 8 and filling == sorted(filling) and filling[-1] > 0.57
     assert len(pressure) == 7 and pressure[2:] == sorted(pressure[2:]) and pressure[-1] > 5e6
     assert float(re.search(r"changed by (\S+) of the largest", text).group(1)) < 1e-3
+
+
+# {example: (numbers of its result line, in which ranges they must be)}
+RECORDED = {
+    "heap": (r"a cone (\S+) radii high, with a slope of (\S+) degrees", (12, 20), (35, 55)),
+    "sheared_cell": (r"sheared by (\S+): .* stress is (\S+) of the pressure", (0.5, 0.6), (0.05, 0.2)),
+    "stretching": (r"strain of (\S+), after (\S+) J", (0.4, 1.2), (1e-14, 5e-14)),
+    "spin": (r"(\d+) grains broke at (\S+) rad/s", (300, 300), (7e6, 1.2e7)),
+}
+
+
+@pytest.mark.parametrize("name", RECORDED)
+def test_recorded_examples_have_their_result_and_a_run_with_a_closed_ledger(name, tmp_path):
+    pattern, *ranges = RECORDED[name]
+    found = [float(number) for number in re.search(pattern, example(f"{name}.py", str(tmp_path / "run"))).groups()]
+    assert all(low <= number <= high for number, (low, high) in zip(found, ranges)), found
+    run = table(tmp_path / "run")
+    assert run.ended[0] and run.energy_closure[0] < 2e-3
+    for state in open_run(tmp_path / "run").states:  # contacts are short, across a sheared boundary too
+        assert np.all(Exported(state, 1.0).distance() < 2.1 * state.radius.max())

@@ -152,7 +152,11 @@ class Recording(sampling.Recorder):
         if self._ids is None or not np.array_equal(state["ids"], self._ids):
             self._ids = state["ids"]
             self._of_grains = self._arrays([Omega().bodies[int(number)] for number in self._ids], state["radius"])
-        return {**state, **self._of_grains}
+        edges = (
+            np.array(Omega().cell.prevHSize) if Omega().periodic else np.zeros((3, 3))
+        )  # at the moment of the forces
+        sheared = {"cell_vectors": edges} if np.any(edges - np.diag(np.diag(edges))) else {}
+        return {**state, **self._of_grains, **sheared}
 
     def _arrays(self, bodies, radius):
         """Arrays (N,) of the bodies: aggregate; with several materials, or masses of a script, material and mass."""

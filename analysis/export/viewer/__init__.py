@@ -88,7 +88,9 @@ def _state(exported, of, origin, unit):
         "between": _packed(exported.between / unit, "<f4"),
         "bonded": _packed(state.contact_bonded, "u1"),
         "planes": [[int(axis), float((place - origin[axis]) / unit)] for axis, place in planes],
-        "cell": None if state.cell_size is None else [(state.cell_size / unit).tolist(), (-origin / unit).tolist()],
+        "cell": None
+        if state.cell_size is None or state.cell_vectors is not None
+        else [(state.cell_size / unit).tolist(), (-origin / unit).tolist()],
     }
 
 
