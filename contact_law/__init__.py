@@ -12,7 +12,7 @@ import ctypes
 import os
 import sys
 
-from .scene import count_work_once, give_way, record, restore_forces, show_contacts, sinter, snapshot
+from .scene import count_work_once, give_way, record, restore_forces, set_material, show_contacts, sinter, snapshot
 
 CLASSES = [
     "JKRMat",
@@ -24,7 +24,7 @@ CLASSES = [
     "JKRWadaEngine",
     "JKRWadaSnapshot",
 ]
-__all__ = [*CLASSES, "snapshot", "sinter", "record"]
+__all__ = [*CLASSES, "snapshot", "set_material", "sinter", "record"]
 
 TOP = os.path.dirname(os.path.dirname(os.path.realpath(__file__)))
 with open(os.path.join(TOP, "analysis/VERSION")) as _file:

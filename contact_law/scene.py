@@ -73,18 +73,53 @@ def sinter(neck):
         For a neck out of range, a time step too long for the bonds, a scene without the contact law, and while
         O.run() is under way (but for PyRunners).
     """
+    _law("sinter()").sinter(neck)
+
+
+def set_material(material, **properties):
+    """Change a material of the running scene, and every contact of it, whoever moves the grains.
+
+    Contacts have their new constants where the grains are now; with the functors from the next O.step on. What that
+    changes of the energy that they hold is booked as constraintWork (MODEL.md, "Materials that change"). Masses stay.
+
+    Parameters
+    ----------
+    material : JKRMat, int or str
+        The object that bodies share, or its index or label in O.materials.
+    **properties
+        `young`, `poisson`, `surfaceEnergy`, `criticalRolling`, `viscoelasticTime`, as of a JKRMat.
+
+    Raises
+    ------
+    ValueError, RuntimeError
+        For a property out of range, or none of these; a time step too long for the new contacts (functors: in the next
+        O.step); a scene without the contact law; and while O.run() is under way (but for PyRunners).
+    """
+    from yade.wrapper import JKRMat, Omega
+
+    if not isinstance(material, JKRMat):
+        material = Omega().materials[material]
+    names = ("young", "poisson", "surfaceEnergy", "criticalRolling", "viscoelasticTime")
+    for name in properties.keys() - names:
+        raise ValueError(f"set_material(): {name}: must be one of {', '.join(names)}")
+    kept = {name: getattr(material, name) for name in ("density", *names)}
+    _law("set_material()").setMaterial(material, JKRMat(**{**kept, **properties}))
+
+
+def _law(call):
+    """The engine or the functor that has the contacts' constants."""
     from yade.wrapper import Ip2_JKRMat_JKRMat_JKRWadaPhys, JKRWadaEngine, Omega
 
     for engine in Omega().engines:
         if engine.dead:
             continue
         if isinstance(engine, JKRWadaEngine):
-            return engine.sinter(neck)
+            return engine
         dispatcher = getattr(engine, "physDispatcher", None)
         for functor in dispatcher.functors if dispatcher else ():
             if isinstance(functor, Ip2_JKRMat_JKRMat_JKRWadaPhys):
-                return functor.sinter(neck)
-    raise RuntimeError("sinter(): O.engines must have a JKRWadaEngine, or an InteractionLoop with this contact law")
+                return functor
+    raise RuntimeError(f"{call}: O.engines must have a JKRWadaEngine, or an InteractionLoop with this contact law")
 
 
 def record(

@@ -2,6 +2,13 @@
 
 namespace contact_law {
 
+namespace {
+	void setMaterials(const SharedState& shared, int first, int second, ContactNow& n)
+	{
+		n.material1 = shared.material[shared.kind[first]], n.material2 = shared.material[shared.kind[second]];
+	}
+}
+
 ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slot)
 {
 	const SharedState& shared = dynamics.state();
@@ -12,6 +19,7 @@ ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slo
 	ContactNow n { dynamics.given(c.i), dynamics.given(c.j), c.constants, c.history,
 		geometryOf(separation, c.constants.radius1 + c.constants.radius2), {}, velocityOf(a) - velocityOf(b) + image.velocity,
 		image.shift };
+	setMaterials(shared, c.i, c.j, n);
 	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
 	n.forces.keepOnly(shared.mechanisms);
@@ -27,6 +35,7 @@ ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int slot)
 	const Image image = nearestImage(dynamics.cell(), separation);
 	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), shared.constantsOf(b.i, b.j), b.history, geometryOf(separation, b.rest),
 		{}, velocityOf(one) - velocityOf(two) + image.velocity, image.shift, true, b.constants, b.rest };
+	setMaterials(shared, b.i, b.j, n);
 	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;
 }
@@ -37,6 +46,8 @@ namespace {
 		ContactNow n { dynamics.given(contact.grain), contact.plane, contact.constants,
 			{ { contact.n1, {} }, contact.before.twist }, domain.planes.geometryOf(contact), domain.planes.forcesOf(contact),
 			contact.before.velocity, { 0, 0, 0 } };
+		const SharedState& shared = dynamics.state();
+		n.material1 = shared.material[shared.kind[contact.grain]], n.material2 = shared.material[shared.planes[contact.plane].kind];
 		n.onPlane = true;
 		n.point = contact.point;
 		return n;
@@ -50,6 +61,7 @@ namespace {
 		s.second = c.first;
 		s.constants.radius1 = c.constants.radius2;
 		s.constants.radius2 = c.constants.radius1;
+		std::swap(s.material1, s.material2);
 		s.history = swapped(c.history);
 		s.geometry.normal = -c.geometry.normal;
 		s.forces.sliding = -c.forces.sliding;

@@ -25,6 +25,7 @@ struct ContactNow {
 	bool bonded = false;
 	BondConstants<double> bond {}; // when it is; the geometry's overlap is then rest - distance
 	double rest = 0;
+	Material material1 {}, material2 {};
 	bool onPlane = false;
 	Vec3<double> point { 0, 0, 0 }; // when it is, of the plane that belongs to the grain's pointer, from the plane's position [m]
 };

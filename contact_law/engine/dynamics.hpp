@@ -119,6 +119,7 @@ public:
 	void setThreads(int threads) { options.threads = threads; }
 	void continueFrom(const Booked&);
 	void bookDisconnection(double energy) { domains[0]->ledger.lost.disconnection += energy; } // [J]
+	void bookConstraintWork(double energy) { domains[0]->constraints.work += energy; }
 
 	// ---- its state ----
 

@@ -37,6 +37,12 @@ namespace {
 	constexpr Real planeRadius = std::numeric_limits<Real>::infinity();
 }
 
+void JKRMat::set(const contact_law::Material& m)
+{
+	young = m.young, poisson = m.poisson, density = m.density;
+	surfaceEnergy = m.surfaceEnergy, criticalRolling = m.criticalRolling, viscoelasticTime = m.viscoelasticTime;
+}
+
 void JKRMat::requireInRange() const
 {
 	requirePositive("JKRMat: young", young, " [Pa]");
@@ -78,7 +84,23 @@ PairConstants<double> JKRWadaConstants::forKernel() const
 	return c;
 }
 
-void JKRWadaConstants::set(const PairConstants<double>& c) { CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_FROM_KERNEL) }
+KindOfPair JKRWadaConstants::kind() const
+{
+	KindOfPair kind { forKernel(), {}, {} };
+	std::memcpy(&kind.material1, materials.data(), sizeof kind.material1);
+	std::memcpy(&kind.material2, materials.data() + materials.size() / 2, sizeof kind.material2);
+	return kind;
+}
+
+void JKRWadaConstants::set(const KindOfPair& kind)
+{
+	const PairConstants<double>& c = kind.constants;
+	CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_FROM_KERNEL)
+	materials.clear();
+	for (const contact_law::Material* material : { &kind.material1, &kind.material2 })
+		for (const contact_law::MaterialRow& row : contact_law::materialList)
+			materials.push_back(material->*row.member);
+}
 
 contact_law::BondConstants<double> JKRWadaBond::forKernel() const
 {
@@ -111,10 +133,10 @@ void JKRWadaPhys::endBond()
 	setConstants(constants);
 }
 
-void JKRWadaPhys::becomeBond()
+void JKRWadaPhys::takeConstantsToCome()
 {
-	constants = constantsToCome;
-	setBond(bondToCome);
+	setConstants(constantsToCome);
+	if (bondToCome) setBond(bondToCome);
 	bondToCome.reset();
 	constantsToCome.reset();
 }
@@ -156,12 +178,41 @@ Real JKRWadaPhys::energyWhenTorn() const
 	              : contact_law::letGo(unsigned(springs), constants->forKernel(), before());
 }
 
+namespace {
+	KindOfPair kindOf(const Scene& scene, const Interaction& interaction, const contact_law::PairOptions& options, Real neck)
+	{
+		const auto& geometry = *YADE_CAST<const GenericSpheresContact*>(interaction.geom.get());
+		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*scene.bodies)[id]->material.get())->forKernel(); };
+		const auto first = materialOf(interaction.getId1()), second = materialOf(interaction.getId2());
+		if (wallOf(scene, interaction.getId1()))
+			return { contact_law::derivePair(second, geometry.refR2, first, planeRadius, options), second, first };
+		return { contact_law::deriveShrunkPair(first, geometry.refR1, second, geometry.refR2, options, neck), first, second };
+	}
+
+	contact_law::BondConstants<double> bondOf(const KindOfPair& kind, const Interaction& interaction, Real neck)
+	{
+		const auto& geometry = *YADE_CAST<const GenericSpheresContact*>(interaction.geom.get());
+		return contact_law::deriveBond(kind.material1, geometry.refR1, kind.material2, geometry.refR2, neck);
+	}
+
+	// visit(interaction, its JKRWadaPhys), of all that have one with constants
+	template <class Visit> void eachContact(const Scene& scene, const Visit& visit)
+	{
+		for (const auto& interaction : *scene.interactions) {
+			if (!interaction->isReal()) continue;
+			auto* phys = dynamic_cast<JKRWadaPhys*>(interaction->phys.get());
+			if (phys && phys->constants && dynamic_cast<const GenericSpheresContact*>(interaction->geom.get()))
+				visit(*interaction, *phys);
+		}
+	}
+}
+
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
         const shared_ptr<Material>& material1, const shared_ptr<Material>& material2, const shared_ptr<Interaction>& interaction)
 {
-	if (interaction->phys) return;
 	const auto& first = *YADE_CAST<JKRMat*>(material1.get());
 	const auto& second = *YADE_CAST<JKRMat*>(material2.get());
+	if (interaction->phys) return requireSameMaterials(*YADE_CAST<JKRWadaPhys*>(interaction->phys.get()), first, second, *interaction);
 	const auto* geometry = YADE_CAST<GenericSpheresContact*>(interaction->geom.get());
 	const bool plane = wallOf(*scene, interaction->getId1());
 	const auto phys = shared_ptr<JKRWadaPhys>(new JKRWadaPhys);
@@ -173,17 +224,49 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	} catch (const std::invalid_argument& refusal) {
 		return refuseInStep(*scene, std::string("Ip2_JKRMat_JKRMat_JKRWadaPhys: ") + refusal.what());
 	}
-	const auto derived = plane
-	        ? contact_law::derivePair(second.forKernel(), geometry->refR2, first.forKernel(), planeRadius, options())
-	        : contact_law::deriveShrunkPair(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, options(), neck);
-	phys->setConstants(constants.of(derived));
+	const KindOfPair kind = kindOf(*scene, *interaction, options(), neck);
+	phys->setConstants(constants.of(kind));
 	const auto* spheres = dynamic_cast<const ScGeom*>(geometry);
 	const bool overlap = spheres && spheres->penetrationDepth > 0; // Ig2 may have found them further apart
 	if (neck != 0 && overlap && scene->iter < bondsBefore) {
 		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
-		phys->setBond(
-		        bonds.of(contact_law::deriveBond(first.forKernel(), geometry->refR1, second.forKernel(), geometry->refR2, own)));
+		phys->setBond(bonds.of(bondOf(kind, *interaction, own)));
 	}
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireSameMaterials(
+        const JKRWadaPhys& phys, const JKRMat& material1, const JKRMat& material2, const Interaction& interaction) const
+{
+	if (!phys.constants) return;
+	const JKRWadaConstants& made = *(phys.constantsToCome ? phys.constantsToCome : phys.constants);
+	const bool plane = std::isinf(made.radius2);
+	const contact_law::Material materials[] = { (plane ? material2 : material1).forKernel(),
+		(plane ? material1 : material2).forKernel() };
+	if (std::memcmp(materials, made.materials.data(), sizeof materials) == 0) return;
+	for (int k = 0; k < 2; ++k)
+		for (std::size_t row = 0; row < std::size(contact_law::materialList); ++row)
+			if (materials[k].*contact_law::materialList[row].member
+			        != made.materials[k * std::size(contact_law::materialList) + row])
+				return refuseInStep(*scene,
+				        std::string("Ip2_JKRMat_JKRMat_JKRWadaPhys: the ") + contact_law::materialList[row].name
+				                + " of the material of "
+				                + bodyName((k == 0) != plane ? interaction.getId1() : interaction.getId2())
+				                + changedMaterial);
+}
+
+void Ip2_JKRMat_JKRMat_JKRWadaPhys::setMaterial(const shared_ptr<JKRMat>& material, const shared_ptr<JKRMat>& as)
+{
+	requireLoopAtRest("set_material()");
+	material->set(as->forKernel());
+	const Scene& now = *Omega::instance().getScene();
+	eachContact(now, [&](const Interaction& interaction, JKRWadaPhys& phys) {
+		const KindOfPair kind = kindOf(now, interaction, options(), neck);
+		if (!phys.constantsToCome && SharedConstants::same(phys.constants->kind(), kind)) return;
+		const JKRWadaBond* bond = (phys.bondToCome ? phys.bondToCome : phys.bond).get();
+		phys.constantsToCome = constants.of(kind);
+		if (bond) phys.bondToCome = bonds.of(bondOf(kind, interaction, bond->neck));
+		if (!phys.touching) phys.takeConstantsToCome();
+	});
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
@@ -201,25 +284,18 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::sinter(Real neckNow)
 void sinterContacts(const Scene& scene, const contact_law::PairOptions& options, Real neck, Real largestNeck, SharedConstants& constants,
         SharedBonds& bonds)
 {
-	for (const auto& interaction : *scene.interactions) {
-		if (!interaction->isReal()) continue;
-		auto* phys = dynamic_cast<JKRWadaPhys*>(interaction->phys.get());
-		const auto* geometry = dynamic_cast<const GenericSpheresContact*>(interaction->geom.get());
-		if (!phys || !geometry) continue;
-		const auto materialOf = [&](Body::id_t id) { return YADE_CAST<JKRMat*>((*scene.bodies)[id]->material.get())->forKernel(); };
-		const auto first = materialOf(interaction->getId1()), second = materialOf(interaction->getId2());
-		const auto shrunk =
-		        constants.of(contact_law::deriveShrunkPair(first, geometry->refR1, second, geometry->refR2, options, largestNeck));
-		const bool torn = phys->current && phys->overlap < -phys->constants->pullOffOverlap;
-		if (phys->bonded || !phys->touching || torn)
-			phys->constants = shrunk; // of the contact that may come
-		else if (phys->bondToCome)
-			phys->constantsToCome = shrunk; // sintered since the latest step: the bond keeps its neck
+	eachContact(scene, [&](const Interaction& interaction, JKRWadaPhys& phys) {
+		const KindOfPair kind = kindOf(scene, interaction, options, largestNeck);
+		const auto shrunk = constants.of(kind);
+		const bool torn = phys.current && phys.overlap < -phys.constants->pullOffOverlap;
+		if (phys.bonded || !phys.touching || torn)
+			(phys.constantsToCome ? phys.constantsToCome : phys.constants) = shrunk; // of the contact that may come
 		else {
-			phys->bondToCome = bonds.of(contact_law::deriveBond(first, geometry->refR1, second, geometry->refR2, neck));
-			phys->constantsToCome = shrunk;
+			phys.constantsToCome = shrunk;
+			// one that was sintered since the latest step keeps its neck
+			if (!phys.bondToCome) phys.bondToCome = bonds.of(bondOf(kind, interaction, neck));
 		}
-	}
+	});
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const
@@ -237,7 +313,8 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants(
 {
 	requireInRange(*material1, radius1, *material2, radius2);
 	JKRWadaConstants constants;
-	constants.set(contact_law::deriveShrunkPair(material1->forKernel(), radius1, material2->forKernel(), radius2, options(), neck));
+	const contact_law::Material first = material1->forKernel(), second = material2->forKernel();
+	constants.set({ contact_law::deriveShrunkPair(first, radius1, second, radius2, options(), neck), first, second });
 	return constants.pyDict();
 }
 
@@ -319,10 +396,16 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	const unsigned mechanisms = mechanismsOf(constants), started = phys.started(mechanisms);
 	if (started && !phys.bonded)
 		contact_law::startSprings(mechanisms, started, constants, (1 / std::sqrt(dot(apart, apart))) * apart, history, before);
-	ContactStepResult r = phys.bonded ? bondStep(phys, constants, motion, before, history, mechanisms)
-	                                  : contact_law::contactStepWith[mechanisms](constants, limitRule, motion, before, history);
+	const auto step = [&](const PairConstants<double>& c, const ContactMotion& m, const contact_law::ContactBefore& then,
+	                          contact_law::LimitRule limit) {
+		return phys.bonded ? bondStep(phys, c, m, then, history, mechanismsOf(c))
+		                   : contact_law::contactStepWith[mechanismsOf(c)](c, limit, m, then, history);
+	};
+	ContactStepResult r = step(constants, motion, before, limitRule);
 
-	if (phys.bondToCome && r.touching) sinter(phys, motion, history, r);
+	if (phys.constantsToCome && r.touching)
+		phys.bondToCome && !phys.bonded ? sinter(phys, motion, history, r)
+		                                : changeConstants(phys, motion, before, history.twist, r, step);
 	if (!finish(*interaction, phys, motion, history.twist, mechanisms, r)) return false;
 	if (r.pointersMoved || started) {
 		phys.pointer1 = state1.ori.conjugate() * fromKernel(history.pointers.n1);
@@ -352,7 +435,12 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::goPlane(
 	contact_law::ContactBefore before = phys.before();
 	const unsigned mechanisms = mechanismsOf(constants), started = phys.started(mechanisms);
 	if (started) contact_law::startSprings(mechanisms, started, constants, plane.normal, history, before);
-	const ContactStepResult r = contact_law::planeStepWith[mechanisms](constants, limitRule, motion, before, history);
+	const auto step = [&](const PairConstants<double>& c, const ContactMotion& m, const contact_law::ContactBefore& then,
+	                          contact_law::LimitRule limit) {
+		return contact_law::planeStepWith[mechanismsOf(c)](c, limit, m, then, history);
+	};
+	ContactStepResult r = step(constants, motion, before, limitRule);
+	if (phys.constantsToCome && r.touching) changeConstants(phys, motion, before, history.twist, r, step);
 
 	if (!finish(interaction, phys, motion, history.twist, mechanisms, r)) return false;
 	if (r.pointersMoved || started) {
@@ -408,11 +496,38 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::sinter(
 	r.torque2 = r.torqueBefore2;
 	r.dissipated.disconnection += total(r.stored);
 	r.stored = { 0, 0, 0, 0 };
-	phys.becomeBond();
+	phys.takeConstantsToCome();
 	phys.restDistance = contact_law::newBond(motion.separation, history);
 	r.geometry = contact_law::geometryOf(motion.separation, phys.restDistance);
 	r.now = contact_law::ContactForces<double>::none();
 	r.pointersMoved = true;
+}
+
+/* Constants of another material: the contact gives the half kick before this instant with the old ones, the one after it with the new. What
+ * it holds changes where it is, which constraintWork takes. step: of no length, held at the new limits. */
+template <class Step>
+void Law2_ScGeom_JKRWadaPhys_JKRWada::changeConstants(JKRWadaPhys& phys, ContactMotion motion, const contact_law::ContactBefore& before,
+        Real twist, ContactStepResult& r, const Step& step)
+{
+	const contact_law::ContactBefore now { true, r.geometry.overlap, r.now.drag, r.now.slidingDisplacement, r.now.rollingDisplacement,
+		twist, before.velocity };
+	motion.dt = 0;
+	phys.takeConstantsToCome();
+	const PairConstants<double> constants = phys.constants->forKernel();
+	if (!stepIsBelow(contact_law::unstableStep(constants))) return;
+	const ContactStepResult changed = step(constants, motion, now, contact_law::LimitRule::Held);
+	r.force = r.forceBefore + 0.5 * changed.force;
+	r.torque1 = r.torqueBefore1 + 0.5 * changed.torque1;
+	r.torque2 = r.torqueBefore2 + 0.5 * changed.torque2;
+	if (scene->trackEnergy) {
+		contact_law::Energies energies;
+		energies.constraintWork = total(r.stored) - total(changed.stored) - total(changed.dissipated);
+		channels.prepare(*scene);
+		channels.add(*scene, energies);
+	}
+	r.touching = changed.touching, r.geometry = changed.geometry, r.now = changed.now;
+	r.stored = changed.stored, r.dissipated += changed.dissipated;
+	r.pointersMoved = r.pointersMoved || changed.pointersMoved;
 }
 
 ContactStepResult Law2_ScGeom_JKRWadaPhys_JKRWada::bondStep(JKRWadaPhys& phys, const PairConstants<double>& constants, ContactMotion motion,

@@ -15,6 +15,7 @@ inline Vector3r fromKernel(const contact_law::Vec3<double>& v) { return Vector3r
 class JKRMat : public ElastMat {
 public:
 	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
+	void set(const contact_law::Material&);
 	void requireInRange() const; // throws std::invalid_argument
 	void postLoad(JKRMat&);      // likewise: when the material is made or loaded, and when an attribute below is set
 	virtual ~JKRMat() {}
@@ -40,16 +41,24 @@ REGISTER_SERIALIZABLE(JKRMat);
 #define CONTACT_LAW_PAIR_ATTRIBUTE(name, readByForces, documentation) ((Real, name, 0, Attr::readonly, documentation))
 #define CONTACT_LAW_BOND_ATTRIBUTE(name, documentation) ((Real, name, 0, Attr::readonly, documentation))
 
+// Constants, and the materials that they are of; with a plane, the grain's is the first.
+struct KindOfPair {
+	contact_law::PairConstants<double> constants;
+	contact_law::Material material1, material2;
+};
+
 class JKRWadaConstants : public Serializable {
 public:
 	contact_law::PairConstants<double> forKernel() const;
-	void set(const contact_law::PairConstants<double>&);
+	KindOfPair kind() const;
+	void set(const KindOfPair&);
 	virtual ~JKRWadaConstants() {}
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS(JKRWadaConstants, Serializable,
 		"What two materials and two radii make of a contact: derived once, shared by all contacts of the same kind. Symbols and "
 		"sources: contact_law/MODEL.md.",
 		CONTACT_LAW_PAIR_CONSTANTS(CONTACT_LAW_PAIR_ATTRIBUTE)
+		((std::vector<Real>, materials, , Attr::readonly|Attr::hidden, "The constants of both materials."))
 	);
 	// clang-format on
 };
@@ -58,6 +67,7 @@ REGISTER_SERIALIZABLE(JKRWadaConstants);
 class JKRWadaBond : public Serializable {
 public:
 	contact_law::BondConstants<double> forKernel() const;
+	contact_law::BondConstants<double> kind() const { return forKernel(); }
 	void set(const contact_law::BondConstants<double>&);
 	virtual ~JKRWadaBond() {}
 	// clang-format off
@@ -81,7 +91,7 @@ public:
 		shared_ptr<Object> result;
 #pragma omp critical(SharedObjectLatest)
 		{
-			if (!latest || !same(latest->forKernel(), derived)) {
+			if (!latest || !same(latest->kind(), derived)) {
 				latest = shared_ptr<Object>(new Object);
 				latest->set(derived);
 			}
@@ -90,7 +100,7 @@ public:
 		return result;
 	}
 };
-using SharedConstants = SharedObject<JKRWadaConstants, contact_law::PairConstants<double>>;
+using SharedConstants = SharedObject<JKRWadaConstants, KindOfPair>;
 using SharedBonds = SharedObject<JKRWadaBond, contact_law::BondConstants<double>>;
 
 class JKRWadaPhys : public NormShearPhys {
@@ -98,7 +108,7 @@ public:
 	void setConstants(const shared_ptr<JKRWadaConstants>&);
 	void setBond(const shared_ptr<JKRWadaBond>&);
 	void endBond();
-	void becomeBond();
+	void takeConstantsToCome();
 	// All but the pointers. velocity: of the kernel's grain 1 past grain 2 through the last step. Against a plane the grain is body 2.
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
 	        const Vector3r& velocity, bool ofPlane = false);
@@ -119,9 +129,9 @@ public:
 		((shared_ptr<JKRWadaBond>, bond, , Attr::readonly, "Constants of this kind of bond; None when it is none. Those in "
 			"constants are of the contact that may take its place."))
 		((Real, restDistance, 0, Attr::readonly, "Distance of the centres at which a bond was made [m]."))
-		((shared_ptr<JKRWadaBond>, bondToCome, , Attr::readonly|Attr::hidden, "The bond that this contact becomes when its forces "
-			"are next evaluated (sinter())."))
-		((shared_ptr<JKRWadaConstants>, constantsToCome, , Attr::readonly|Attr::hidden, "The constants from then on."))
+		((shared_ptr<JKRWadaConstants>, constantsToCome, , Attr::readonly|Attr::hidden, "The constants from when its forces are next "
+			"evaluated on (sinter(), set_material())."))
+		((shared_ptr<JKRWadaBond>, bondToCome, , Attr::readonly|Attr::hidden, "Those of the bond that it is from then on."))
 		((Vector3r, pointer1, Vector3r::Zero(), Attr::readonly, "Contact pointer of the first body, in the body's own frame: unit "
 			"vector from its centre to the contact. Of a Wall: vector in its plane from its position to the contact [m]."))
 		((Vector3r, pointer2, Vector3r::Zero(), Attr::readonly, "Contact pointer of the second body, likewise."))
@@ -159,6 +169,7 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 
 	contact_law::PairOptions options() const { return { linearDamping, slidingStiffnessFactor }; }
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
+	void requireSameMaterials(const JKRWadaPhys&, const JKRMat& material1, const JKRMat& material2, const Interaction&) const;
 
 public:
 	// Throws std::invalid_argument: within a step, YADE's threads could not pass an exception on.
@@ -166,6 +177,7 @@ public:
 	void go(const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
 	        const shared_ptr<Interaction>& interaction) override;
 	void sinter(Real neck);
+	void setMaterial(const shared_ptr<JKRMat>& material, const shared_ptr<JKRMat>& as);
 	boost::python::dict pairConstants(
 	        const shared_ptr<JKRMat>& material1, Real radius1, const shared_ptr<JKRMat>& material2, Real radius2) const;
 	boost::python::dict bondConstants(
@@ -193,6 +205,9 @@ public:
 			"then; existing bonds keep their own neck. All grains shrink by the largest neck, which "
 			"is this functor's neck from then on. What the contacts held is booked as disconnection. contact_law.sinter() "
 			"calls this, or the fused engine's.")
+		.def("setMaterial", &Ip2_JKRMat_JKRMat_JKRWadaPhys::setMaterial, (boost::python::arg("material"), boost::python::arg("like")),
+			"A material gets the constants of another one, and all contacts the constants of their materials when their "
+			"forces are next evaluated: contact_law.set_material() calls this, or the fused engine's.")
 		.def("pairConstants", &Ip2_JKRMat_JKRMat_JKRWadaPhys::pairConstants,
 			(boost::python::arg("material1"), boost::python::arg("radius1"), boost::python::arg("material2"), boost::python::arg("radius2")),
 			"Constants of a contact of two grains (materials, radii in m) as a dict with the attributes of JKRWadaConstants. "
@@ -221,6 +236,9 @@ class Law2_ScGeom_JKRWadaPhys_JKRWada : public LawFunctor {
 	bool finish(const Interaction&, JKRWadaPhys&, const contact_law::ContactMotion&, Real twist, unsigned mechanisms,
 	        const contact_law::ContactStepResult&);
 	void sinter(JKRWadaPhys&, const contact_law::ContactMotion&, contact_law::ContactHistory<double>&, contact_law::ContactStepResult&);
+	template <class Step>
+	void changeConstants(JKRWadaPhys&, contact_law::ContactMotion, const contact_law::ContactBefore&, Real twist,
+	        contact_law::ContactStepResult&, const Step&);
 	contact_law::ContactStepResult bondStep(JKRWadaPhys&, const contact_law::PairConstants<double>&, contact_law::ContactMotion,
 	        const contact_law::ContactBefore&, contact_law::ContactHistory<double>&, unsigned mechanisms);
 

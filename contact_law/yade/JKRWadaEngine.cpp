@@ -189,6 +189,32 @@ void JKRWadaEngine::sinter(Real neckNow)
 	readAnew();
 	current->dynamics.bookDisconnection(
 	        before - current->dynamics.totalEnergy()); // of the leapfrog's kinetic energy: contacts push no more
+	writeChanged();
+}
+
+// What the change of contacts takes, or brings, is constraintWork, but for what springs lose that are beyond their new limits.
+void JKRWadaEngine::setMaterial(const shared_ptr<JKRMat>& material, const shared_ptr<JKRMat>& as)
+{
+	const auto rest = atRest("set_material()");
+	enter(Moment::BetweenSteps);
+	const Real before = current->dynamics.totalEnergy(), disconnection = contact_law::booked(current->dynamics).lost.disconnection;
+	exportContacts();
+	const contact_law::Material was = material->forKernel();
+	material->set(as->forKernel());
+	try {
+		readAnew();
+	} catch (...) {
+		material->set(was);
+		throw;
+	}
+	current->dynamics.bookDisconnection(disconnection - contact_law::booked(current->dynamics).lost.disconnection);
+	current->dynamics.bookConstraintWork(before - current->dynamics.totalEnergy());
+	writeChanged();
+}
+
+// Between two steps, after the scene was read anew.
+void JKRWadaEngine::writeChanged()
+{
 	current->contacts.withdraw(*scene);
 	bringBodies();
 	if (exportInteractions) writeContacts();

@@ -37,6 +37,7 @@ class JKRWadaEngine : public GlobalEngine {
 	void takeMoreBodies();
 	void exportContacts();
 	void readAnew();
+	void writeChanged();
 	void leave();
 	bool isAmong(const std::vector<shared_ptr<Engine>>&) const; // and not dead
 	bool isReplaced(const Scene&) const;
@@ -68,6 +69,7 @@ public:
 	void giveWay();
 	void restoreForces();
 	void sinter(Real neck);
+	void setMaterial(const shared_ptr<JKRMat>& material, const shared_ptr<JKRMat>& as);
 	bool inStep() const;              // between this engine's action and the end of O.step
 	bool holdsContacts(Scene&) const; // those of a checkpoint too, from before the first step
 	// For calls from Python: throws std::runtime_error while O.run() is under way, otherwise keeps the engine from acting as long as
@@ -129,6 +131,9 @@ public:
 			"strain where the grains are; existing bonds keep their own neck. All grains shrink by the largest neck, "
 			"which is this engine's neck from now on. What the contacts held is booked as disconnection. Call it between two "
 			"O.steps. contact_law.sinter() calls this, or the functors'.")
+		.def("setMaterial", &JKRWadaEngine::setMaterial, (boost::python::arg("material"), boost::python::arg("like")),
+			"A material gets the constants of another one now, and all contacts theirs. contact_law.set_material() calls this, or "
+			"the functors'.")
 		.def("statistics", &JKRWadaEngine::statistics, "Dict: contacts now, of these bonds; planeContacts (with Walls); bonds "
 			"broken so far by mode (brokenByStretching, -Sliding, -Rolling, -Twisting) and what that took (by the same name "
 			"with Energy, in J); contactUpdates (small steps times contacts), events (contacts that formed or broke, and "

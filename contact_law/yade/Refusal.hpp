@@ -48,6 +48,9 @@ inline std::string tooDeep(int id, int other, double overlap) // over the smalle
 	        + " of the smaller radius";
 }
 
+// What a material is changed by, in both.
+constexpr const char* changedMaterial = " was changed during the run: contact_law.set_material() does that";
+
 // ---- O.run(n) steps in a thread of its own ----
 
 // What would read or write the scene meanwhile is refused to Python's main thread; PyRunners are called by the loop's own thread, between

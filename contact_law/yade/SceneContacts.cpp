@@ -87,7 +87,7 @@ namespace {
 
 	bool isOfKind(const JKRWadaPhys& phys, const ContactNow& c)
 	{
-		return phys.bonded == c.bonded && SharedConstants::same(phys.constants->forKernel(), c.constants);
+		return phys.bonded == c.bonded && SharedConstants::same(phys.constants->kind(), { c.constants, c.material1, c.material2 });
 	}
 }
 
@@ -130,7 +130,7 @@ shared_ptr<Interaction> SceneContacts::made(const Scene& scene, int id1, int id2
 {
 	const shared_ptr<Interaction> interaction(new Interaction(id1, id2));
 	const shared_ptr<JKRWadaPhys> phys(new JKRWadaPhys);
-	phys->setConstants(constants.of(c.constants));
+	phys->setConstants(constants.of({ c.constants, c.material1, c.material2 }));
 	if (c.bonded) phys->setBond(bonds.of(c.bond));
 	interaction->geom = shared_ptr<ScGeom>(new ScGeom);
 	interaction->phys = phys;

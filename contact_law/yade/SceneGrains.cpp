@@ -342,7 +342,8 @@ void SceneGrains::requireSameMaterials() const
 		const contact_law::Material now = kinds[k].material->forKernel();
 		for (const contact_law::MaterialRow& row : contact_law::materialList)
 			if (now.*row.member != was.*row.member)
-				refuseChanged(row.name + std::string(" of the material of ") + firstBodyOf(int(k)));
+				refuseInEngine(
+				        std::string("the ") + row.name + " of the material of " + firstBodyOf(int(k)) + changedMaterial);
 	}
 }
 

@@ -60,3 +60,13 @@ def test_recorded_examples_have_their_result_and_a_run_with_a_closed_ledger(name
     assert run.ended[0] and run.energy_closure[0] < 2e-3
     for state in open_run(tmp_path / "run").states:  # contacts are short, across a sheared boundary too
         assert np.all(Exported(state, 1.0).distance() < 2.1 * state.radius.max())
+
+
+def test_the_cooling_cluster_loses_contacts_and_its_energy_is_accounted_for():
+    """Contacts that hold less than nothing hold less of it: the cooling does work on the grains."""
+    text = example("cooling.py")
+    contacts = [int(value) for value in re.findall(r"(\d+) contacts", text)]
+    work = [float(value) for value in re.findall(r"(\S+) K\(0\) done", text)]
+    assert contacts == sorted(contacts, reverse=True) and contacts[-1] < 0.7 * contacts[0]
+    assert work[0] == 0 and work == sorted(work) and work[-1] > 0.05
+    assert float(re.search(r"changed by (\S+) K", text).group(1)) < 1e-4
