@@ -71,7 +71,7 @@ def pytest_pyfunc_call(pyfuncitem):
         return None
     names = pyfuncitem._fixtureinfo.argnames
     arguments = {name: pyfuncitem.funcargs[name] for name in names}
-    call_in_yade(pyfuncitem.path, pyfuncitem.originalname, arguments)
+    call_in_yade(Path(pyfuncitem.fspath), pyfuncitem.originalname, arguments)
     return True
 
 
