@@ -24,6 +24,10 @@ def require_libraries():
 
 def missing_libraries():
     """A line about what this Python lacks; None when it has all."""
+    if sys.version_info < (3, 10):
+        return (
+            f"{sys.executable} is Python {sys.version.split()[0]}: must be 3.10 or later (/usr/bin/python3 after make)"
+        )
     missing = [name for name in NEEDED if find_spec(name) is None]
     if not missing:
         return None
