@@ -51,6 +51,13 @@ SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
 ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
+# What run.json has of a material, a contact and a bond, under `derived`.
+OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
+OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
+OF_BOND = (
+    *("shrunkRadius", "neckRadius", "neckLength", "normalStiffness", "slidingStiffness"),
+    *("rollingStiffness", "twistingStiffness", "breakingEnergy"),
+)
 PROPERTIES = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling")
 
 
@@ -172,6 +179,14 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0, other=None):
     found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, sliding))
     if neck:
         found["bond"] = _by_plugins_names(_bond_constants(both[0], grains.grainRadius, neck))
+    return found
+
+
+def contact_constants(grains, neck=0.0):
+    """pair_constants() as the plugin gives them to a run: with a bond, or None, under "bond"."""
+    found = {"bond": None, **pair_constants(grains, neck=neck)}
+    if neck:
+        found["bond"]["shrunkRadius"] = grains.grainRadius * theory.shrunk_radius(neck)
     return found
 
 

@@ -2,6 +2,8 @@
 
     python3 yade_scripts/study.py TABLE [-j JOBS]    run what is left, JOBS threads at once
     python3 yade_scripts/study.py TABLE --longer 6e-6    go on with runs that ended undecided, to that duration [s]
+    python3 yade_scripts/study.py TABLE --device gpu     collisions on a GPU (make gpu), what it can't run as otherwise;
+                                                     processor: by the same code
     python3 yade_scripts/study.py TABLE --status     what is done, running, waiting, failed; runs nothing
     python3 yade_scripts/study.py TABLE --slurm [-j JOBS] [-- --time=12:00:00]
                                                      what is left as job arrays of Slurm, JOBS tasks of each at once;
@@ -36,6 +38,7 @@ from analysis.printable import printable, shell_line
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from analysis.version import version_text
 from yade_scripts.parameters import one_line_errors, show, tell
+from yade_scripts.run import on_device
 from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
 from yade_scripts.runner import slurm
@@ -55,6 +58,7 @@ def parse_arguments(arguments):
     parser.add_argument("-j", "--jobs", type=int, metavar="JOBS", help=jobs)
     parser.add_argument("--version", action="version", version=f"study.py {version_text()}")
     parser.add_argument("--longer", type=float, metavar="SECONDS", help="duration to which undecided runs go on")
+    parser.add_argument("--device", choices=tuple(on_device.LIBRARIES), help="where collisions run that can run there")
     parser.add_argument("--status", action="store_true", help="print what has become of each row, and run nothing")
     parser.add_argument("--slurm", action="store_true", help="submit what is left; after --: options of sbatch")
     parser.add_argument("--dry-run", action="store_true", help="with --slurm: print the job scripts, submit nothing")
@@ -67,6 +71,8 @@ def parse_arguments(arguments):
         parser.error(f'{"--dry-run" if options.dry_run else options.sbatch[0]}: must be given with --slurm')
     if options.longer is not None and not (options.longer > 0 and not options.slurm):
         parser.error(f"--longer = {options.longer:g}: must be > 0, and without --slurm")
+    if options.device and (options.longer is not None or options.slurm):
+        parser.error("--device: must be given without --slurm and --longer (its runs leave no checkpoints)")
     if options.status and options.slurm:
         parser.error("--status: must be given without --slurm")
     return options
@@ -131,6 +137,7 @@ def main(arguments):
             table = os.path.abspath(table)
             os.chdir(place)
         study = Study(table, options.jobs or CORES, options.longer)
+        library = on_device.library_of(options.device) if options.device else None
         if options.status:
             states, _ = study.states_with_queue()
             show(study.table(states) + study.undecided(states))
@@ -144,7 +151,7 @@ def main(arguments):
     for row in wrong:
         tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
-        states = study.run(stop)
+        states = study.run(stop, library)
     except OSError as error:  # yade is missing, the disk is full
         tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)
         return 1

@@ -49,9 +49,17 @@ def compression_and_velocity(x, x_velocity, aggregate_radius):
     right, left = (x > 0).nonzero()[0], (x < 0).nonzero()[0]
     if not (right.size and left.size):
         return float("nan"), float("nan")
-    mean = lambda values, side: np.add.reduce(values[side]) / side.size  # in half the time of values[side].mean()
-    d = 2.0 * aggregate_radius - (mean(x, right) - mean(x, left))
-    return float(d), float(-(mean(x_velocity, right) - mean(x_velocity, left)))
+    of = lambda side: (side.size, np.add.reduce(x[side]), np.add.reduce(x_velocity[side]))
+    return tuple(map(float, of_sides(of(right), of(left), aggregate_radius)))
+
+
+def of_sides(right, left, aggregate_radius):
+    """(d, v) of compression_and_velocity() from (number, sum of x, sum of its velocity) of the grains with x > 0, and
+    with x < 0; NaN while one side is empty."""
+    n, x, v = right
+    m, y, w = left
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return 2.0 * aggregate_radius - (x / n - y / m), -(v / n - w / m)
 
 
 def maximum_compression(time, d, v):

@@ -183,11 +183,12 @@ def _require_sintered(neck, constants):
 # ---- the scene ----
 
 
-def prepare(parameters, threads):
-    """The Scene of a collision; called within YADE."""
-    from yade_scripts.run import scene as yade_scene
+def prepare(parameters, threads, constants=None):
+    """The Scene of a collision; called within YADE, or with the constants of materials.contact_constants()."""
+    if constants is None:
+        from yade_scripts.run import scene as yade_scene
 
-    constants = yade_scene.pair_constants(parameters, parameters.neck)
+        constants = yade_scene.pair_constants(parameters, parameters.neck)
     parameters = complete(parameters, constants, threads)
     parameters, pair, velocities = place(parameters, constants["equilibriumOverlap"])
     for packing in pair:
@@ -206,9 +207,11 @@ def prepare(parameters, threads):
         reason = f"as given: {short:g} t0 until {until:.4g} s, then {step:g} t0"
     if parameters.endWhenApart:
         controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
-    materials = yade_scene.materials_of(parameters)
 
     def build():
+        from yade_scripts.run import scene as yade_scene
+
+        materials = yade_scene.materials_of(parameters)
         yade_scene.add_bodies(pair, velocities, materials, bool(parameters.planar), parameters.spins)
         if parameters.target == WALL:
             yade_scene.add_plane(AXIS, 0.0, materials[0])
@@ -220,6 +223,7 @@ def prepare(parameters, threads):
         derived={**_sizes(aggregate_radius, pair, parameters), **({} if touch is None else {"firstTouch": touch})},
         grains=arrays_of_grains(pair),
         build=build,
+        placed=(pair, velocities),
         series=lambda state: {**series(state, aggregate_radius), **resting},
         law={"neck": parameters.neck},
         step_choice=reason,

@@ -62,6 +62,12 @@ class Packing:
             return 1.0
         return np.array([material["density"] for material in self.parameters["materials"]])[self.kind]
 
+    def motion(self, velocity, spin):
+        """Velocities (N, 3) [m/s] and angular velocities (N, 3) [rad/s] of its grains as it moves with a velocity (3,)
+        and turns about its centre of mass with a spin (3,)."""
+        turning = np.cross(spin, centred(self.position, self.radius, self.density))
+        return velocity + turning, np.broadcast_to(spin, turning.shape)
+
     def of(self, rows, **about):
         """The packing of some of its grains, which are where they were; about: what else its parameters say."""
         kind = None if self.kind is None else self.kind[rows]

@@ -1,12 +1,13 @@
 """The interface of a kind of run, an instance of Kind for each file of experiments/, and when a run is sampled."""
 
 from dataclasses import dataclass, field
-from math import ceil
+from math import ceil, pi
 from typing import Any, Callable, Mapping, NamedTuple
 
 import numpy as np
 
 from analysis.runs.format import RunKind
+from yade_scripts.materials import OF_BOND, OF_CONTACT, OF_MATERIAL, derived_materials
 
 FEWEST_SAMPLES = 300
 MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
@@ -41,6 +42,7 @@ class Scene:
     grains: Mapping  # arrays (N,) that every state has: aggregate, of several materials material and mass
     build: Callable[[], None]  # makes the bodies (and the cell)
     series: Callable[[Mapping], Mapping[str, Any]]  # state -> {name: value} of the kind's own series
+    placed: tuple | None = None  # packings and their velocities, of a collision, by which a device starts it
     law: Mapping = field(default_factory=dict)  # attributes of the contact law, in the engine and in the functors
     energy_is_conserved: bool = True  # whether all channels together are constant
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False
@@ -98,3 +100,19 @@ class Schedule:
         samples = ceil(steps / interval)
         chosen = np.linspace(0, samples, states).round().astype(int)
         return cls(samples * interval, interval, frozenset(int(number) for number in chosen))
+
+
+def derived(scene, schedule):
+    """The entry `derived` of run.json: the grains' material, what follows from it and the parameters (SI)."""
+    grains, constants = scene.parameters, scene.constants
+    return {
+        **{name: getattr(grains, name) for name in (*OF_MATERIAL, "grainRadius")},
+        "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
+        **{name: constants[name] for name in OF_CONTACT},
+        **derived_materials(grains),
+        **({name: constants["bond"][name] for name in OF_BOND} if constants["bond"] else {}),
+        "timeStep": scene.time_step,
+        "steps": schedule.steps,
+        **scene.derived,
+        "stepChoice": scene.step_choice,
+    }

@@ -16,13 +16,12 @@ import yade.wrapper as yade
 from yade.wrapper import Omega
 
 from analysis.runs.format import Quantity, RunKind, same
-from yade_scripts.materials import PROPERTIES
+from yade_scripts.materials import OF_CONTACT, OF_MATERIAL, PROPERTIES
 from yade_scripts.parameters import one_line
 from yade_scripts.run import checkpoint
 from yade_scripts.run import recorder as sampling
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import Schedule
-from yade_scripts.run.scene import OF_CONTACT, OF_MATERIAL
 from yade_scripts.run.script import hardware, made_with
 
 KIND = "script"

@@ -1,7 +1,7 @@
 """From packings and parameters to YADE's bodies and engines."""
 
 import os
-from math import inf, pi
+from math import inf
 
 import numpy as np
 import yade.wrapper as yade
@@ -9,8 +9,7 @@ from yade import utils
 from yade.wrapper import Omega
 
 import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
-from yade_scripts.materials import derived_materials
-from yade_scripts.packings.packing import centred
+from yade_scripts.materials import OF_MATERIAL
 from yade_scripts.run import recorder as sampling
 from yade_scripts.run.parameters import SPRINGS
 
@@ -18,12 +17,6 @@ from yade_scripts.run.parameters import SPRINGS
 # more often, more makes every step test more pairs that don't touch. Measured at 6,400 grains, a step costs
 # the same to a few per cent from 0.02 to 0.1, and an eighth more at 0.3.
 VERLET_DISTANCE = 0.1
-OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
-OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
-OF_BOND = (
-    *("shrunkRadius", "neckRadius", "neckLength", "normalStiffness", "slidingStiffness"),
-    *("rollingStiffness", "twistingStiffness", "breakingEnergy"),
-)
 COLOURS = ((0.35, 0.60, 0.85), (0.90, 0.60, 0.25))
 
 
@@ -72,9 +65,8 @@ def add_bodies(packings, velocities, materials, planar=False, spins=None):
             utils.sphere(centre, radius, material=ids[kind], color=colour)
             for centre, radius, kind in zip(packing.position.tolist(), packing.radius.tolist(), kinds)
         ]
-        spin = np.zeros(3) if spins is None else spins[number]
-        turning = np.cross(spin, centred(packing.position, packing.radius, packing.density))
-        for body, own in zip(bodies, velocity + turning):
+        motion = packing.motion(velocity, np.zeros(3) if spins is None else spins[number])
+        for body, own, spin in zip(bodies, *motion):
             body.state.vel, body.state.angVel = own, spin
             body.state.blockedDOFs = "zXY" if planar else ""
         omega.bodies.append(bodies)
@@ -137,19 +129,3 @@ def functor_engines(grain_radius, runner, contacts={}, **law):
         yade.NewtonIntegrator(damping=0),
         runner,
     ]
-
-
-def derived(scene, schedule):
-    """The entry `derived` of run.json: the grains' material, what follows from it and the parameters (SI)."""
-    grains, constants = scene.parameters, scene.constants
-    return {
-        **{name: getattr(grains, name) for name in (*OF_MATERIAL, "grainRadius")},
-        "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
-        **{name: constants[name] for name in OF_CONTACT},
-        **derived_materials(grains),
-        **({name: constants["bond"][name] for name in OF_BOND} if constants["bond"] else {}),
-        "timeStep": scene.time_step,
-        "steps": schedule.steps,
-        **scene.derived,
-        "stepChoice": scene.step_choice,
-    }

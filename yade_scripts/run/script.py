@@ -17,7 +17,7 @@ from analysis.version import version_text
 from yade_scripts.parameters import InputError, ParameterError, one_line, one_line_errors, show, tell
 from yade_scripts.run import checkpoint
 from yade_scripts.run.folder import RunFolder
-from yade_scripts.run.kind import Schedule
+from yade_scripts.run.kind import Schedule, derived
 from yade_scripts.run.parameters import gather
 from yade_scripts.time_step import AUTO, require_countable
 
@@ -80,16 +80,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
 
     parameters, saved = scene.parameters, folder.checkpoint
     begun -= saved.wallTime if saved else 0.0  # before interruptions
-    run = {
-        "kind": kind.name,
-        "parameters": parameters.as_dict(),
-        "derived": yade_scene.derived(scene, schedule),
-        "seed": parameters.as_dict().get("seed"),
-        **made_with(),
-        "hardware": hardware(),
-        "endedBy": None,
-        "outcome": None,  # until it has come to its end
-    }
+    run = record_of(kind, scene, schedule, made_with())
     wall_time = lambda: time.monotonic() - begun
     write = lambda status: folder.write_run({**run, "wallTime": wall_time(), "status": status})
     recorder, ending = Recorder(folder, schedule, kind.format, scene), None
@@ -131,6 +122,21 @@ def _carry_out(kind, scene, schedule, folder, begun):
             folder.remove_checkpoint()
     _print_end(folder.path, run, status, ending, wall_time())
     return code
+
+
+def record_of(kind, scene, schedule, made):
+    """What run.json holds before the run; made: as made_with() gives it."""
+    parameters = scene.parameters.as_dict()
+    return {
+        "kind": kind.name,
+        "parameters": parameters,
+        "derived": derived(scene, schedule),
+        "seed": parameters.get("seed"),
+        **made,
+        "hardware": hardware(),
+        "endedBy": None,
+        "outcome": None,  # until it has come to its end
+    }
 
 
 def _step(steps, recorder, runner, begin, writer):

@@ -143,6 +143,10 @@ def state(row, log):
             return refused(f"{status.damage(folder)}; must be restored, or {folder} removed to run the row")
         if differs:
             return refused(f"{folder}: holds an ended run with {differs}; must be the same, or removed to run the row")
+        if row.longer and run.get("outcome") == "undecided" and not checkpoint.exists(folder):
+            return refused(
+                f"{folder}: undecided, of a device, which leaves no checkpoint; must be removed to run longer"
+            )
         return State(DONE, 1.0, run.get("wallTime"))
     if lock and not lock.can_be_followed:
         return refused(f"{folder}: is run {lock}; must have ended there, or {folder}/lock be removed")

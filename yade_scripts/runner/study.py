@@ -10,7 +10,8 @@ from analysis.printable import printable
 from analysis.progress import bar
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING, counts, duration_text
 from analysis.runs.status import line as run_line
-from yade_scripts.run import checkpoint
+from yade_scripts.experiments.collision import CollisionParameters
+from yade_scripts.run import checkpoint, on_device
 from yade_scripts.runner import rows, slurm
 from yade_scripts.runner.batch import LOGS, Batch, StudyFolder
 
@@ -48,14 +49,16 @@ class Study:
                 states[number] = replace(state, note=note)
         return states, list(map(bool, tasks))
 
-    def run(self, stop=None):
+    def run(self, stop=None, library=None):
         """Run what is left, with a bar meanwhile, and wait for what others run; the states at the end.
 
         stop: script.StopSignals. After a signal, or an exception such as KeyboardInterrupt, the runs are stopped, each
-        with a checkpoint."""
+        with a checkpoint. library: run.ensemble.Library of a device, on which the rows run first that it can run."""
         failed = [row for row, state in zip(self.rows, self.states()) if state.kind == FAILED and not state.refused]
         self.folder.remove_logs(failed)  # they are tried again
         self._announce()
+        if library:
+            self._run_on(library, stop)
         due = 0.0
         with bar(len(self.rows), "runs") as shown, closing(self._running()) as running:
             for _ in running:
@@ -68,6 +71,21 @@ class Study:
                     self._show(shown)
                     due = time.monotonic() + max(EVERY, (time.monotonic() - begun) / SHARE)
         return self.states()
+
+    def _run_on(self, library, stop):
+        """Run the rows that a device can run on it; each has a log, as runs of workers have."""
+        able = lambda row: isinstance(row.parameters, CollisionParameters) and not checkpoint.exists(row.out)
+        states = zip(self.rows, self.states())
+        waiting = [row for row, state in states if state.kind == WAITING and able(row)]
+        fitting = [row for row in waiting if not on_device.why_not(row.parameters, library)]
+        self.folder.remove_logs(fitting)
+        with bar(len(fitting), f"on {library.device}") as shown:
+            failed = on_device.run([row.parameters for row in fitting], library, stop, shown.update)
+        for number, problem in failed.items():
+            with open(self.folder.log(fitting[number]), "a") as log:
+                log.write(f"{os.path.basename(fitting[number].script)}: {problem}\n{rows.summary(1)}")
+        if others := len(self.rows) - len(fitting):
+            print(f"{len(fitting)} rows on {library.device}; {others} are done, or not for it", flush=True)
 
     def _running(self):
         """Runs all rows; an iterator that goes on meanwhile, and stops the runs when it is closed."""

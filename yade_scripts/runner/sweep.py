@@ -12,7 +12,7 @@ from analysis.report.rows import table as table_of_runs
 from analysis.runs.status import DONE
 from yade_scripts.experiments import collision, compression
 from yade_scripts.parameters import SWITCH, ParameterError
-from yade_scripts.run import table
+from yade_scripts.run import on_device, table
 from yade_scripts.run.parameters import CORES
 from yade_scripts.runner.study import Study
 
@@ -24,7 +24,7 @@ class RunsFailed(RuntimeError):
     """Runs of a sweep that failed; the message names them, and why. The others have run, and stay."""
 
 
-def collide(folder="runs", jobs=None, longer=None, **parameters):
+def collide(folder="runs", jobs=None, longer=None, device=None, **parameters):
     """Run collisions: one for every combination of the values of the parameters.
 
         runs = collide(velocity=[1, 3, 10, 30], seed=range(6), packing="bcca", grains=500, material="silicate")
@@ -38,6 +38,8 @@ def collide(folder="runs", jobs=None, longer=None, **parameters):
         Threads at once (one for each core).
     longer : float, optional
         Duration [s] to which runs that ended undecided go on.
+    device : {"gpu", "processor"}, optional
+        Where runs go that can run there (study.py --device).
     **parameters
         As `collide.py --help` lists them; a list, range or array stands for several values, None, alone, for the
         default.
@@ -54,7 +56,7 @@ def collide(folder="runs", jobs=None, longer=None, **parameters):
     RunsFailed
         When a run failed; the others have run. Ctrl-C stops the runs, each with a checkpoint.
     """
-    return _sweep(collision.KIND, "collide.py", parameters, folder, jobs, longer)
+    return _sweep(collision.KIND, "collide.py", parameters, folder, jobs, longer, device)
 
 
 def compress(folder="runs", jobs=None, **parameters):
@@ -62,7 +64,7 @@ def compress(folder="runs", jobs=None, **parameters):
     return _sweep(compression.KIND, "compress.py", parameters, folder, jobs)
 
 
-def _sweep(kind, script, parameters, folder, jobs, longer=None):
+def _sweep(kind, script, parameters, folder, jobs, longer=None, device=None):
     jobs, folder = CORES if jobs is None else jobs, os.fspath(folder)
     if jobs < 1:
         raise ParameterError(f"jobs = {jobs}: must be a whole number, 1 or more")
@@ -71,10 +73,10 @@ def _sweep(kind, script, parameters, folder, jobs, longer=None):
     file = os.path.join(folder, f"{kind.name}-{name}.table")
     os.makedirs(folder, exist_ok=True)
     table.write(file, rows, f"{len(rows)} runs, from Python: {kind.name}")
-    study = Study(file, jobs, longer)
+    study, library = Study(file, jobs, longer), on_device.library_of(device) if device else None
     study.folder.lock()
     try:
-        states = study.run()
+        states = study.run(library=library)
     finally:
         os.close(study.folder.held)
     if undecided := study.undecided(states):

@@ -1,0 +1,88 @@
+"""study.py --device: collisions by the device's code leave run folders as YADE's scripts do."""
+
+import os
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from analysis.runs.folder import open_run
+from analysis.runs.format import same
+from analysis.runs.status import verify_run
+from yade_scripts.run import on_device
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(__file__)), "scripts"))
+from running import PYTHON, STUDY, environment, study
+
+ROWS = {
+    "like": "packing=bcca grains=30 velocity=15 impact=0.3",
+    "mixed": "packing=bcca grains=30 velocity=15 impact=0.3 material=ice,silicate materialFraction=0.4",
+    "turning": "packing=bpca grains=30 velocity=3 seed=2 spin=2e7",
+    "sintered": "packing=bcca grains=30 velocity=15 seed=3 stepFraction=0.1 neck=0.3",
+}
+
+
+def write_table(file, rows, **usual):
+    """A table of {description: 'name=value ...'}, `usual` where a row has no value."""
+    cells = [{**usual, **dict(word.split("=") for word in row.split())} for row in rows.values()]
+    names = list(dict.fromkeys(name for row in cells for name in row))
+    lines = [" ".join([name, *(row.get(key, "*") for key in names)]) for name, row in zip(rows, cells)]
+    file.write_text("\n".join([" ".join(["description", *names]), *lines]) + "\n")
+
+
+@pytest.fixture(scope="module")
+def both(tmp_path_factory):
+    """Folders in which the table was run by the device's code, without YADE on PATH, and by YADE."""
+    folders = [tmp_path_factory.mktemp(name) for name in ("device", "yade")]
+    for folder in folders:
+        write_table(folder / "a.table", ROWS, stepFraction="0.2", threads="1", states="4")
+    ours = subprocess.run(
+        [PYTHON, STUDY, "a.table", "--device", "processor"],
+        cwd=folders[0],
+        env={**environment(), "PATH": os.path.dirname(shutil.which("true"))},
+        capture_output=True,
+        text=True,
+    )
+    theirs = study(folders[1], "a.table", "-j", "2")
+    assert "4 done, 0 failed" in ours.stdout and "4 done" in theirs.stdout, ours.stderr + theirs.stderr
+    return folders
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_a_run_on_a_device_is_that_of_yade(both, name):
+    """The same parameters, derived constants, arrays and, until motions part, numbers; and the same outcome."""
+    ours, theirs = (open_run(folder / "runs" / name) for folder in both)
+    assert ours.record["device"] == "processor" and verify_run(ours.path)[0] == []
+    assert ours.record["outcome"] == theirs.record["outcome"] and ours.history.keys() == theirs.history.keys()
+    assert [key for key, value in theirs.parameters.items() if not same(value, ours.parameters[key])] == ["resume"]
+    assert theirs.derived.keys() == ours.derived.keys()
+    assert ours.derived["firstTouch"] == pytest.approx(theirs.derived["firstTouch"], rel=1e-12)
+    before = theirs.history["time"] < theirs.derived["firstTouch"] + 20 * theirs.derived["timeUnit"]
+    scale = theirs.history["kinetic"][0]
+    for column in ("kinetic", "normal", "rolling", "slidingDissipation", "d", "v", "formed", "contacts"):
+        one, other = (run.history[column][: np.count_nonzero(before)] for run in (ours, theirs))
+        assert one == pytest.approx(
+            other, rel=1e-6, abs=1e-6 * (scale if abs(other).max() < 1e-9 else abs(other).max())
+        )
+    first, other = vars(ours.start), vars(theirs.start)
+    assert {key for key in first if first[key] is not None} == {key for key in other if other[key] is not None}
+    assert np.array_equal(first["aggregate"], other["aggregate"])
+    assert first["position"] == pytest.approx(other["position"], abs=1e-12 * 1e-7)
+    assert first["velocity"] == pytest.approx(other["velocity"], abs=1e-9)
+
+
+def test_what_a_device_cannot_run_goes_to_yade_and_one_failure_is_its_own(tmp_path):
+    rows = {"plate": "velocity=5 target=wall", "fine": "velocity=5", "fast": "velocity=90000 unusual=1"}
+    write_table(tmp_path / "b.table", rows, packing="bcca", grains="20", stepFraction="0.4")
+    done = study(tmp_path, "b.table", "--device", "processor", "-j", "1")
+    assert "2 rows on processor; 1 are done, or not for it" in done.stdout and "2 done, 1 failed" in done.stdout
+    assert done.returncode == 1 and "fast: a grain moves more than half a radius in a step" in done.stderr
+    assert "device" not in open_run(tmp_path / "runs" / "plate").record
+
+
+def test_a_device_that_is_not_there_is_one_line(tmp_path, monkeypatch):
+    monkeypatch.setitem(on_device.LIBRARIES, "gpu", tmp_path / "none.so")
+    with pytest.raises(on_device.InputError, match="^--device gpu: .*none.so is not built; must be made first"):
+        on_device.library_of("gpu")
