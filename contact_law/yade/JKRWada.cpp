@@ -49,7 +49,9 @@ void JKRMat::requireInRange() const
 	require(poisson >= 0 && poisson <= 0.5 && (poisson > 0 || viscoelasticTime == 0), "JKRMat: poisson", poisson,
 	        "from 0 to 0.5, and above 0 with drag");
 	requirePositive("JKRMat: density", density, " [kg/m^3]");
-	requirePositive("JKRMat: surfaceEnergy", surfaceEnergy, " [J/m^2]");
+	requirePositive("JKRMat: surfaceEnergy", surfaceEnergy,
+	        " [J/m^2]: all limits of this law follow from adhesion; of grains without, YADE's Law2_ScGeom_MindlinPhys_Mindlin is the "
+	        "law");
 	requirePositive("JKRMat: criticalRolling", criticalRolling, " [m]");
 	requireNotNegative("JKRMat: viscoelasticTime", viscoelasticTime, " [s]");
 }

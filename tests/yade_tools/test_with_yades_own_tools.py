@@ -67,6 +67,7 @@ def test_help_describes_attributes_with_units():
 SETTINGS = {
     "functor.neck = 0.71": "neck = 0.71: must be 0 (no bonds), or up to 0.7",
     "JKRMat(young=-1)": "young = -1: must be > 0 [Pa]",
+    "JKRMat(surfaceEnergy=0)": "must be > 0 [J/m^2]: all limits of this law follow from adhesion",
 }
 
 
