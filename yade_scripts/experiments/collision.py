@@ -248,7 +248,7 @@ def place(parameters, overlap):
         reach = (parameters.radius + 1) * parameters.grainRadius
         centre = np.array([reach, parameters.impact * reach, 0.0])
         pair = [packings.moved(pair[0], -centre), packings.moved(pair[1], centre)]
-        velocities = velocities_of(pair, np.array([-parameters.velocity, 0.0, 0.0]))
+        velocities = [-own for own in velocities_of(pair, np.array([parameters.velocity, 0.0, 0.0]))]
     else:
         parameters = _with_size(parameters, pair)
         pair, velocities = offset_pair(*pair, parameters.velocity, parameters.impact)

@@ -65,8 +65,10 @@ class Packing:
     def motion(self, velocity, spin):
         """Velocities (N, 3) [m/s] and angular velocities (N, 3) [rad/s] of its grains as it moves with a velocity (3,)
         and turns about its centre of mass with a spin (3,)."""
-        turning = np.cross(spin, centred(self.position, self.radius, self.density))
-        return velocity + turning, np.broadcast_to(spin, turning.shape)
+        velocities, spins = (np.broadcast_to(np.asarray(motion, dtype=float), (self.grains, 3)) for motion in (velocity, spin))
+        if np.any(spin):
+            velocities = velocities + np.cross(spin, centred(self.position, self.radius, self.density))
+        return velocities, spins
 
     def of(self, rows, **about):
         """The packing of some of its grains, which are where they were; about: what else its parameters say."""
