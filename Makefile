@@ -27,7 +27,6 @@
 # make test-dustpy     the atlas in DustPy, of PyPI; make disk draws a disk with and without it
 # make test-viewer     a run's page in chromium
 # make test-edits      changes running scenes at random, a thousand sequences (EDITS=3000)
-# make test-mutations  forty slips, each of which a test must notice (half an hour)
 # make test-sanitizers engine, kernel, functors and checkpoints with sanitizers (a quarter of an hour): build/sanitizers.md
 # make test-debian     README's commands in fresh Debian 12 and 13 (root; an hour): build/debian.md. SYSTEMS=sid, bookworm-arm64
 # make test-arm64      the same bits of the engine on an emulated 64-bit ARM: build/arm64.md
@@ -43,7 +42,7 @@ MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := all
 STUDIES := elastoplastic viscous compression sintered compressed atlas
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build gpu headers tried always install uninstall image demo check test \
-        test-edits test-newest test-dustpy disk test-mutations test-viewer test-debian test-arm64 yade-tree \
+        test-edits test-newest test-dustpy disk test-viewer test-debian test-arm64 yade-tree \
         test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \
         conformance docs test-docs lint format study-status tables
 
@@ -273,9 +272,6 @@ test-dustpy: build/dustpy/installed
 	@build/dustpy/bin/python -m pytest -q -p no:cacheprovider tests/analysis/test_coagulation.py
 disk: build/dustpy/installed
 	@build/dustpy/bin/python -m analysis.atlas.adapters.disk analysis/gallery/atlas
-
-test-mutations: all
-	@$(PYTHON) tests/mutations/run_mutations.py -j $(JOBS)
 
 test-viewer: all
 	@$(MAKE) deps PACKAGES="chromium chromium-driver python3-selenium"
