@@ -65,7 +65,9 @@ class Packing:
     def motion(self, velocity, spin):
         """Velocities (N, 3) [m/s] and angular velocities (N, 3) [rad/s] of its grains as it moves with a velocity (3,)
         and turns about its centre of mass with a spin (3,)."""
-        velocities, spins = (np.broadcast_to(np.asarray(motion, dtype=float), (self.grains, 3)) for motion in (velocity, spin))
+        velocities, spins = (
+            np.broadcast_to(np.asarray(motion, dtype=float), (self.grains, 3)) for motion in (velocity, spin)
+        )
         if np.any(spin):
             velocities = velocities + np.cross(spin, centred(self.position, self.radius, self.density))
         return velocities, spins
