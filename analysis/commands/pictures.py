@@ -8,6 +8,7 @@ from ..printable import printable
 from . import FAILED, RUNS, add_command, complain, number, with_ending
 
 FORMATS = "vtk", "xyz"
+OPTICS = "mstm", "ddscat"  # input of codes that scatter light
 
 
 def add_parsers(commands):
@@ -145,15 +146,39 @@ def _add_export(commands):
         about += "".join(f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields)
     text, form = "write a run's states for ParaView, OVITO and others", argparse.RawDescriptionHelpFormatter
     parser = _of_one_run(commands, export, text, about, "FOLDER", "RUN/export", formatter_class=form)
-    of_format = "vtk (grains and contacts), xyz (grains in one file of text) or all; default: vtk"
-    parser.add_argument("--format", choices=(*FORMATS, "all"), default="vtk", help=of_format)
+    of_format = (
+        "vtk (grains and contacts), xyz (grains in one file of text), all (both), mstm (x y z radius) or ddscat "
+    )
+    of_format += "(dipoles); default: vtk"
+    parser.add_argument("--format", choices=(*FORMATS, "all", *OPTICS), default="vtk", help=of_format)
+    parser.add_argument("--state", metavar="K", type=_state, help="of the states only this one, from 0, or last")
+    of_fragment = number(lambda fragment: fragment >= 0 and fragment == int(fragment), "a whole number >= 0")
+    parser.add_argument("--fragment", metavar="K", type=of_fragment, help="only the grains of this fragment")
+    parser.add_argument("--unit", choices=("m", "um", "nm"), default="m", help="of mstm and ddscat (default: m)")
+
+
+def _state(text):
+    if text != "last" and not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text}: must be a whole number >= 0, or last")
+    return text
 
 
 def export(options):
     from ..export.formats import write_vtk, write_xyz
+    from ..export.optics import chosen, write_ddscat, write_mstm
 
     writers = dict(zip(FORMATS, (write_vtk, write_xyz)))
     run, place = _run_or_file(options.run, "export")
+    run = chosen(run, options.state, options.fragment)
+    if options.format in OPTICS:
+        write = {"mstm": write_mstm, "ddscat": write_ddscat}[options.format]
+        print(printable(write(run, options.out or place, options.unit)))
+        return 0
+    if options.unit != "m":
+        complain(
+            f"--unit {options.unit}: {options.format} is in SI units; must be left out, or with {' or '.join(OPTICS)}"
+        )
+        return FAILED
     for name in FORMATS if options.format == "all" else (options.format,):
         print(printable(writers[name](run, options.out or place)), flush=True)
     return 0

@@ -138,3 +138,24 @@ def test_xyz_has_every_field_to_the_bit(run):
         agree(found, grains)
         assert f"Time={state.time!r}" in about
         assert ('pbc="T T F"' in about) == ("Lattice=" in about) == (state.cell_size is not None)
+
+
+def test_optics_codes_get_the_spheres_and_the_dipoles_of_a_fragment(run):
+    """x y z radius as MSTM (pymstm) reads them; DDSCAT's dipoles fill the spheres' volume and lie in them."""
+    of_last = ["--state", "1", "--fragment", "0", "--unit", "um"]
+    for form in ("mstm", "ddscat"):
+        assert main(["export", str(run.path), "--format", form, "--out", str(run.path / form), *of_last]) == 0
+    state = run.states[1]
+    spheres = np.loadtxt(run.path / "mstm/000000.pos")
+    inside = state.position[:3] if state.cell_size is None else state.position[:3] % state.cell_size
+    assert spheres[:, 3] == pytest.approx(1e6 * state.radius[:3]) and spheres.shape == (3, 4)
+    assert np.diff(spheres[:, :3], axis=0) == pytest.approx(1e6 * np.diff(inside, axis=0))
+    lines = (run.path / "ddscat/000000.dat").read_text().splitlines()
+    spacing, effective = (float(lines[0].replace(",", "").split()[k]) for k in (2, 6))
+    dipoles = np.array([line.split() for line in lines[7:]], dtype=int)
+    assert len(dipoles) == int(lines[1].split()[0]) and np.all(dipoles[:, 4:] == 1)
+    assert 4 / 3 * np.pi * effective**3 == pytest.approx(len(dipoles) * spacing**3, rel=1e-4)
+    away = np.linalg.norm(dipoles[:, None, 1:4] * spacing - spheres[:, :3], axis=2) - spheres[:, 3]
+    assert np.all(away.min(axis=1) < 1e-4) and np.all((away < -spacing).any(axis=0))
+    for wrong in (["--state", "9"], ["--fragment", "7"], ["--unit", "um"]):
+        assert main(["export", str(run.path), *wrong]) == 2
