@@ -153,6 +153,43 @@ struct ForcePass : PairPass {
 	bool cut; // springs beyond their limits are events: cut, not returned to the limit (kernel/limits.hpp), or after a script's move
 };
 
+// ---- planes ----
+
+// A half-space of its own material, bounded by a plane across an axis, which rests or moves at a velocity of its own.
+struct PlaneInput {
+	int axis, kind, id;              // of the coordinate; of the material; as its owner calls it
+	Vec3<double> position, velocity; // at the start [m], now [m/s]
+};
+
+struct PlaneContact { // of a grain and a plane
+	int grain, plane;
+	double side = 0;         // 1: the grain is on the side of rising coordinates, -1
+	Vec3<double> n1 {};      // the grain's pointer, in the frame of the laboratory
+	Vec3<double> point {};   // of the plane that belongs to it, from the plane's position [m]
+	ContactBefore before {}; // for the next step; velocity: of the grain past the plane
+	PairConstants<double> constants {};
+
+	friend bool operator<(const PlaneContact& a, const PlaneContact& b)
+	{
+		return a.grain != b.grain ? a.grain < b.grain : a.plane < b.plane;
+	}
+};
+
+// What the pass over contacts with planes needs: of eight of them at most.
+struct PlanePass {
+	const Grain* grains;
+	const PlaneInput* planes;
+	const Vec3<double>* positions; // of the planes now
+	PlaneContact* contacts;
+	int count;
+	double dt;
+	bool cut;                // as ForcePass has it
+	Dissipation* dissipated; // likewise
+	long* slips;
+};
+
+// ---- bounds on velocities ----
+
 // The least and the greatest velocity components of grains: no two of them move apart or together faster than diagonal(); and by how much
 // kicks changed each component at most. The fourth lane: room for a register.
 struct alignas(32) VelocityRange {
@@ -207,7 +244,8 @@ struct InstructionSet {
 	void (*energies[mechanismSets][2])(const ForcePass&, StoredEnergy<double>&);
 	double (*sumOfProduct)(double a, double b, double c); // a b + c as this file's flags compile it: tests ask whether it is contracted
 	void (*integrate)(Grain* begin, Grain* end, const double* inverseMass, const double* inverseInertia, double dt, VelocityRange&);
-	void (*bondForces[2])(const BondPass&); // by whether the scene is periodic, as in the searches below
+	unsigned (*planeForces[mechanismSets])(const PlanePass&, LaneForces&); // returns those (bits) that it leaves to planeStep()
+	void (*bondForces[2])(const BondPass&);                                // by whether the scene is periodic, as in the searches below
 	void (*bondEnergies)(const BondPass&, StoredEnergy<double>&);
 	void (*addInBox[2])(const BoxSearch&, Candidates&);
 	int (*closeGrains[2])(const NeighbourSearch&, int* found);

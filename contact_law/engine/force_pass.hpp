@@ -9,6 +9,7 @@
 #include "bond_pass.hpp"
 #include "neighbour_search.hpp"
 #include "pass_access.hpp"
+#include "plane_pass.hpp"
 
 namespace contact_law {
 
@@ -260,6 +261,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		set.forces[mechanisms][uniform][false] = &forces<mechanisms, uniform, false>;
 		set.forces[mechanisms][uniform][true] = &forces<mechanisms, uniform, true>;
 		set.energies[mechanisms][uniform] = &energies<mechanisms, uniform>;
+		set.planeForces[mechanisms] = &PlanePasses<Pack>::template forces<mechanisms>;
 	}
 	// All combinations of mechanisms from this one on.
 	template <unsigned mechanisms> static void add(InstructionSet& set)

@@ -64,13 +64,10 @@ bool PlaneContacts::step(PlaneContact& c)
 	const Vec3<double> foot = footOf(c);
 	PlaneHistory<double> history { { { turnedALittle(c.n1, s.dt * m.spin1), plane.normal }, c.point - foot }, c.before.twist };
 	const ContactStepResult r = planeStepWith[s.mechanisms](c.constants, s.limit, m, c.before, history);
-	addToGrain(g, r.force, r.torque1);
 	ledger.bookOnPlane(c.grain, g, r, s.dt);
 	if (r.geometry.overlap > s.radius[c.grain]) ledger.tooDeep = true;
 	ledger.counts.events += s.dt > 0 && (!c.before.touching || r.isEvent());
-	work -= s.dt * dot(r.forceBefore, plane.velocity);
-	after[c.plane] = after[c.plane] + (r.force - r.forceBefore);
-	pushes[c.plane] = pushes[c.plane] - r.force;
+	add(c, r.force, r.forceBefore, r.torque1);
 	c.n1 = history.pointers.n1;
 	c.point = history.pointers.anchor + foot;
 	c.before = { r.touching, r.geometry.overlap, r.now.drag, r.now.slidingDisplacement, r.now.rollingDisplacement, history.twist,
@@ -90,15 +87,59 @@ void PlaneContacts::addForcesOfPlanes(const VelocityRange& velocities)
 	}
 	approach += s.dt * fastest;
 	if (approach > s.skin) findNear();
+	stepAll();
+	formContacts();
+}
+
+void PlaneContacts::stepAll()
+{
+	long slips = 0;
 	std::size_t kept = 0;
-	for (PlaneContact& c : contacts)
-		if (step(c)) contacts[kept++] = c;
+	for (std::size_t first = 0; first < contacts.size(); first += lanes) {
+		const int count = int(std::min(contacts.size() - first, std::size_t(lanes)));
+		const PlanePass pass { s.grains.data(), s.planes.data(), positions.data(), &contacts[first], count, s.dt,
+			s.limit == LimitRule::Cut, &ledger.lost, &slips };
+		LaneForces out;
+		const unsigned left = s.displaced.empty() ? s.passes->planeForces[s.mechanisms](pass, out) : ~0u;
+		for (int k = 0; k < count; ++k) {
+			PlaneContact& c = contacts[first + k];
+			if (!(left >> k & 1)) {
+				const Vec3<double> force { out.force[0][k], out.force[1][k], out.force[2][k] };
+				add(c, force, 0.5 * force, { out.torque1[0][k], out.torque1[1][k], out.torque1[2][k] });
+			} else if (!step(c))
+				continue;
+			if (&contacts[kept] != &c) contacts[kept] = c;
+			++kept;
+		}
+	}
 	contacts.resize(kept);
+	ledger.counts.events += s.dt > 0 ? slips : 0;
+}
+
+// A contact's kick on its grain; its plane is given the opposite.
+void PlaneContacts::add(const PlaneContact& c, const Vec3<double>& force, const Vec3<double>& forceBefore, const Vec3<double>& torque)
+{
+	addToGrain(s.grains[c.grain], force, torque);
+	work -= s.dt * dot(forceBefore, s.planes[c.plane].velocity);
+	after[c.plane] = after[c.plane] + (force - forceBefore);
+	pushes[c.plane] = pushes[c.plane] - force;
+}
+
+// Of grains that overlap a plane now and do not touch it.
+void PlaneContacts::formContacts()
+{
+	std::vector<PlaneContact> formed;
+	auto known = contacts.begin();
 	for (const Near& pair : near) {
+		while (known != contacts.end() && std::pair(known->grain, known->plane) < std::pair(pair.grain, pair.plane))
+			++known;
+		if (known != contacts.end() && known->grain == pair.grain && known->plane == pair.plane) continue;
 		if (std::abs(distance(pair.grain, pair.plane)) > s.radius[pair.grain]) continue;
 		PlaneContact contact = newContact(pair.grain, pair.plane);
-		if (!std::binary_search(contacts.begin(), contacts.end(), contact) && step(contact)) place(contact);
+		if (step(contact)) formed.push_back(contact);
 	}
+	for (const PlaneContact& contact : formed)
+		place(contact);
 }
 
 void PlaneContacts::findNear()

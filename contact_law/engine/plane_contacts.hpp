@@ -1,25 +1,11 @@
-/* The planes of a scene (half-spaces, kernel/contact_step.hpp) and a domain's grains on them. Few grains touch a plane: each of these
- * contacts is a call of the kernel's scalar law in each step, slips, formation and breaking included, as the functors make it. A plane
+/* The planes of a scene (half-spaces, kernel/contact_step.hpp) and a domain's grains on them. Contacts go through a pass
+ * of their own (plane_pass.hpp); those that form, break, or have springs cut, through the kernel's scalar law, as the functors' do. A plane
  * concerns the domain that has the grain and no other; each domain moves the planes on by itself, all by the same numbers. */
 #pragma once
 #include "../kernel/contact_step.hpp"
 #include "ledger.hpp"
 
 namespace contact_law {
-
-struct PlaneContact {
-	int grain, plane;
-	double side = 0;         // 1: the grain is on the side of rising coordinates, -1
-	Vec3<double> n1 {};      // the grain's pointer, in the frame of the laboratory
-	Vec3<double> point {};   // of the plane that belongs to it, from the plane's position [m]
-	ContactBefore before {}; // for the next step; velocity: of the grain past the plane
-	PairConstants<double> constants {};
-
-	friend bool operator<(const PlaneContact& a, const PlaneContact& b)
-	{
-		return a.grain != b.grain ? a.grain < b.grain : a.plane < b.plane;
-	}
-};
 
 class PlaneContacts {
 public:
@@ -68,6 +54,9 @@ private:
 	Plane planeOf(const PlaneContact&) const;
 	Vec3<double> footOf(const PlaneContact&) const;
 	bool step(PlaneContact&);
+	void add(const PlaneContact&, const Vec3<double>& force, const Vec3<double>& forceBefore, const Vec3<double>& torque);
+	void stepAll();
+	void formContacts();
 
 	SharedState& s;
 	Ledger& ledger;

@@ -46,12 +46,6 @@ inline std::string textOf(double number)
 	return buffer;
 }
 
-// A half-space of its own material, bounded by a plane across an axis, which rests or moves at a velocity of its own.
-struct PlaneInput {
-	int axis, kind, id;              // of the coordinate; of the material; as its owner calls it
-	Vec3<double> position, velocity; // at the start [m], now [m/s]
-};
-
 struct SharedState {
 	Aligned<Grain> grains;                                   // then, for each domain, two dummies that unused slots point to
 	std::vector<Group> groups;                               // of all domains

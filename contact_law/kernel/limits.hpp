@@ -26,8 +26,8 @@ inline int limitRuleNumber(const std::string& name)
 constexpr bool rollsFreely(unsigned mechanisms) { return mechanisms & Sliding && !(mechanisms & Rolling); }
 
 // Whether a displacement is beyond its limit; f: the forces at this instant.
-template <unsigned mechanisms, class T>
-inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>& f, const ContactHistory<T>& h)
+template <unsigned mechanisms, class T, class History>
+inline MaskOf<T> beyondLimits(const PairConstants<T>& c, const ContactForces<T>& f, const History& h)
 {
 	MaskOf<T> beyond = T(1.) < T(0.);
 	if constexpr (bool(mechanisms & Twisting)) beyond = beyond | twisting::beyondLimit(c, h.twist);

@@ -27,13 +27,14 @@ def on_planes():
     return sum(isinstance(O.bodies[i.id1].shape, Wall) for i in O.interactions if i.isReal)
 
 
+@pytest.mark.parametrize("instructions", ["", "portable"])
 @pytest.mark.parametrize("limit", ["held", "cut"])
 @pytest.mark.parametrize("kind", ["like", "unlike", "drag"])
-def test_engine_and_functors_agree_step_by_step(kind, limit):
+def test_engine_and_functors_agree_step_by_step(kind, limit, instructions):
     walls = start(kind, limit=limit)
     functors = record(401, "constraintWork")
     touching, forces = on_planes(), [np.array(O.forces.f(wall)) for wall in walls]
-    start(kind, mover="fused", limit=limit)
+    start(kind, mover="fused", limit=limit, instructions=instructions)
     engine = record(400, "constraintWork")
     difference, energy = compared(functors, engine, [*CHANNELS, "constraintWork"])
     assert difference[:100].max() < 1e-12 and difference.max() < 1e-9 and max(energy.values()) < 1e-9
