@@ -194,7 +194,7 @@ gpu: build/gpu/libdevice.so
 NVCC = nvcc -O3 -std=c++17 -arch=$(DEVICE) --expt-relaxed-constexpr -diag-suppress 20091 -Xcompiler -fPIC -shared
 OF_THE_DEVICE := contact_law/gpu/ensemble.cu $(wildcard contact_law/gpu/*.hpp contact_law/kernel/*.hpp)
 build/gpu/libdevice.so: $(OF_THE_DEVICE)
-	$(call COMPILE,$(NVCC) $<)
+	$(call COMPILE,$(NVCC) -Xptxas -v $< 2> $(@D)/resources.txt)
 # Of other numbers: THREADS of a block x BLOCKS of a multiprocessor.
 build/gpu/libdevice-%.so: $(OF_THE_DEVICE)
 	$(call COMPILE,$(NVCC) -DTHREADS=$(word 1,$(subst x, ,$*)) -DBLOCKS=$(word 2,$(subst x, ,$*)) $<)

@@ -1,6 +1,7 @@
 """study.py --device: collisions by the device's code leave run folders as YADE's scripts do."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -86,3 +87,15 @@ def test_a_device_that_is_not_there_is_one_line(tmp_path, monkeypatch):
     monkeypatch.setitem(on_device.LIBRARIES, "gpu", tmp_path / "none.so")
     with pytest.raises(on_device.InputError, match="^--device gpu: .*none.so is not built; must be made first"):
         on_device.library_of("gpu")
+
+
+RESOURCES = on_device.DEVICE.with_name("resources.txt")
+
+
+@pytest.mark.skipif(not RESOURCES.exists(), reason="make gpu has not been called")
+def test_the_device_has_room_for_two_blocks_of_every_kernel():
+    """What nvcc says of registers and of what they spill: 65,536 registers for 2 x 256 threads; spills cost time."""
+    text = RESOURCES.read_text()
+    registers = [int(number) for number in re.findall(r"Used (\d+) registers", text)]
+    spilt = [int(number) for number in re.findall(r"(\d+) bytes spill stores", text)]
+    assert registers and max(registers) <= 128 and max(spilt) <= 800, (registers, spilt)
