@@ -6,8 +6,8 @@ mpiexec --hostfile HOSTS -n 3 yade -n -x yade_scripts/examples/machines.py 2    
 
 The numbers are those of one process but for rounding (of positions 1e-15): forces across domains are added in another
 order. Energies and record() are for one process, and so is the fused engine, which with one core takes 0.13 ms for a
-step of 3,456 grains. YADE's own loop takes 3 to 7 ms in one process, and 8 ms with two workers on two busy cores: it
-needs some fifty machines' cores to be as fast.
+step of 3,456 grains. YADE's own loop takes 3 to 7 ms in one process, and 8 ms with two workers on two busy cores: by
+these numbers some fifty cores would be as fast.
 """
 
 import os
