@@ -10,7 +10,6 @@ from running import TOP, call, messages
 from analysis import open_run, table
 from analysis.export.fields import Exported
 
-
 AS_ROOT = {f"{mpi}_ALLOW_RUN_AS_ROOT{end}": "1" for mpi in ("OMPI", "PRTE") for end in ("", "_CONFIRM")}
 
 
