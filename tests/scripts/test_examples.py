@@ -19,7 +19,8 @@ def example(name, *arguments):
     done = call(TOP, "yade", "-n", "-x", script, *arguments, **AS_ROOT)
     if "MPI.Intracomm.Spawn" in done.stderr:
         pytest.skip("MPI starts no workers here")
-    assert done.returncode == 0 and messages(done) == [], done.stderr
+    others = [line for line in messages(done) if "hwloc" not in line]  # MPI's, in a system without /sys
+    assert done.returncode == 0 and others == [], done.stderr
     return done.stdout
 
 
