@@ -89,10 +89,9 @@ def main(arguments):
         _save_from(texts.pop("from"), files, texts)
         return 0
     parameters = MadeParameters.parse(texts)
-    constants = materials.pair_constants(parameters)
-    materials.require_small_contacts(constants)
+    materials.require_small_contacts(parameters)
     for index, file in enumerate(files):
-        _save(file, make(parameters, constants["equilibriumOverlap"], index))
+        _save(file, make(parameters, materials.equilibrium_overlap(parameters), index))
     return 0
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from analysis import theory
 from analysis.printable import suggested
+from analysis.runs.status import changed
 from analysis.theory.pair_constants import GRAIN_RADII
 from yade_scripts.parameters import (
     NOT_NEGATIVE,
@@ -136,10 +137,11 @@ class GrainParameters(Parameters):
 
 def known_materials(file=None):
     """{name: Material} of the papers, and of one's own in a TOML file, a section a material. Raises ParameterError."""
-    return {**MATERIALS, **(_materials_in(file) if file else {})}
+    return {**MATERIALS, **(_materials_as_written(file, changed(file)) if file else {})}
 
 
-def _materials_in(file):
+@lru_cache
+def _materials_as_written(file, _when):
     import tomllib  # which Python 3.10 lacks
 
     try:
@@ -179,13 +181,6 @@ def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0, other=None):
     found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, sliding))
     if neck:
         found["bond"] = _by_plugins_names(_bond_constants(both[0], grains.grainRadius, neck))
-    return found
-
-
-def contact_constants(grains, neck=0.0):
-    """pair_constants() as the plugin gives them to a run: with a bond, or None, under "bond"."""
-    found = {"bond": None, **pair_constants(grains, neck=neck)}
-    if neck:
         found["bond"]["shrunkRadius"] = grains.grainRadius * theory.shrunk_radius(neck)
     return found
 
@@ -228,9 +223,12 @@ def derived_materials(grains):
     return {"materials": materials, "pullOffEnergies": of_pairs(each, energy).tolist()}
 
 
-def require_small_contacts(constants):
-    """Raise ParameterError when adhesion presses grains together so much that the JKR theory means nothing."""
-    radius, contact = 2 * constants["reducedRadius"], constants["equilibriumContactRadius"]
-    if contact >= 0.5 * radius:
-        given = f"grainRadius = {radius:g}: contacts at rest have a radius of {contact / radius:.2g} grain radii"
-        raise ParameterError(f"{given}; must be less than 0.5, with larger or stiffer grains or less surfaceEnergy")
+def require_small_contacts(grains, radius=None):
+    """Raise ParameterError when adhesion presses grains of a radius [m] (grainRadius) together so much that the JKR
+    theory means nothing. grains: GrainParameters."""
+    radius = radius or grains.grainRadius
+    for own in grains.of_each():
+        contact = pair_constants(own, (radius, radius))["equilibriumContactRadius"]
+        if contact >= 0.5 * radius:
+            given = f"grainRadius = {radius:g}: contacts at rest have a radius of {contact / radius:.2g} grain radii"
+            raise ParameterError(f"{given}; must be less than 0.5, with larger or stiffer grains or less surfaceEnergy")

@@ -77,13 +77,16 @@ def step_limit(constants, filling):
     return min(STABLE_STEP, SAFETY * min(steps) / constants["timeUnit"])
 
 
-def limit_of_unlike(grains, constants, filling, radii=None):
-    """step_limit() of grains of unlike materials, or of sizes between radii (smallest, largest) [m].
+def limit_of(grains, constants, filling, radii=None):
+    """step_limit() of grains that may be of unlike materials, or of sizes between radii (smallest, largest) [m].
 
     The fastest vibration is that of the lightest grains among those to which their contacts are stiffest, the largest.
     grains: materials.GrainParameters; constants: of two grains, whose time unit is the run's."""
+    each = grains.of_each()
+    if radii is None and len(each) == 1:
+        return step_limit(constants, filling)
     smallest, largest = radii or 2 * (grains.grainRadius,)
-    of, each = partial(pair_constants, linearDamping=getattr(grains, "linearDamping", 0.0)), grains.of_each()
+    of = partial(pair_constants, linearDamping=getattr(grains, "linearDamping", 0.0))
     limits = []
     for one in each:
         own = {"reducedMass": of(one, (smallest, smallest))["reducedMass"], "timeUnit": constants["timeUnit"]}

@@ -140,8 +140,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
 
 def complete(parameters, constants, threads):
     """The parameters with what depends on the contact and on YADE's threads. Raises ParameterError."""
-    for own in parameters.of_each():
-        require_small_contacts(pair_constants(own))
+    require_small_contacts(parameters)
     _require_sintered(parameters.neck, constants)
     return with_step(parameters, constants).with_threads(threads)
 
@@ -156,9 +155,7 @@ def with_step(parameters, constants):
 def step_limit(parameters, constants, radii=None):
     """Largest stable stepFraction [t0] of a collision of grains of one size, or of radii (smallest, largest) [m]."""
     filling = time_step.equivalent_filling(parameters.packing, parameters.filling, parameters.planar, constants)
-    if radii or len(parameters.material_names) > 1:
-        return time_step.limit_of_unlike(parameters, constants, filling, radii)
-    return time_step.step_limit(constants, filling)
+    return time_step.limit_of(parameters, constants, filling, radii)
 
 
 def require_stable_with(parameters, constants, pair):
@@ -166,8 +163,7 @@ def require_stable_with(parameters, constants, pair):
     radii = np.concatenate([packing.radius for packing in pair])
     smallest, largest = float(radii.min()), float(radii.max())
     if smallest != largest:
-        for own in parameters.of_each():
-            require_small_contacts(pair_constants(own, (smallest, smallest)))
+        require_small_contacts(parameters, smallest)
         limit = step_limit(parameters, constants, (smallest, largest))
         time_step.require_stable(parameters.stepFraction, limit, "filling and drag, with grains of these sizes")
 
@@ -184,7 +180,7 @@ def _require_sintered(neck, constants):
 
 
 def prepare(parameters, threads, constants=None):
-    """The Scene of a collision; called within YADE, or with the constants of materials.contact_constants()."""
+    """The Scene of a collision; called within YADE, or with the constants of materials.pair_constants()."""
     if constants is None:
         from yade_scripts.run import scene as yade_scene
 
@@ -194,7 +190,7 @@ def prepare(parameters, threads, constants=None):
     for packing in pair:
         packings.require_connected(packing)
     require_stable_with(parameters, constants, pair)
-    touch = _time_of_touch(parameters, pair, velocities, constants["bond"])
+    touch = _time_of_touch(parameters, pair, velocities, constants.get("bond"))
     if parameters.duration is None:
         duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)
         parameters = parameters.changed(duration=duration)
@@ -310,7 +306,7 @@ def series(state, aggregate_radius):
 
 def _end_when_apart(parameters, constants, aggregate_radius, touch):
     """Scene.control of endWhenApart: pieces have been at rest for a while."""
-    known = {**constants, **(constants["bond"] or {}), **derived_materials(parameters)}
+    known = {**constants, **(constants.get("bond") or {}), **derived_materials(parameters)}
     known["aggregateRadius"] = aggregate_radius
     known.update(grainRadius=parameters.grainRadius, density=parameters.density)
     begin = -np.inf if touch is None else touch

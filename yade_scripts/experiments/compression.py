@@ -133,8 +133,7 @@ class CompressionParameters(GrainParameters, RunParameters):
 
 def complete(parameters, constants, threads):
     """The parameters with what depends on the contact and on YADE's threads. Raises ParameterError."""
-    for own in parameters.of_each():
-        require_small_contacts(pair_constants(own))
+    require_small_contacts(parameters)
     return with_step(_with_final_filling(parameters, constants), constants).with_threads(threads)
 
 
@@ -147,9 +146,7 @@ def with_step(parameters, constants):
 
 def step_limit(parameters, constants):
     """Largest stable stepFraction [t0] of a compression with a finalFilling."""
-    if len(parameters.material_names) > 1:
-        return time_step.limit_of_unlike(parameters, constants, parameters.finalFilling)
-    return time_step.step_limit(constants, parameters.finalFilling)
+    return time_step.limit_of(parameters, constants, parameters.finalFilling)
 
 
 def _with_final_filling(parameters, constants):

@@ -67,7 +67,7 @@ def imported(path, texts):
     grain_radius = float(np.sort(radius)[len(radius) // 2])  # by which they are known
     parameters = parameters.changed(grainRadius=grain_radius)
     constants = materials.pair_constants(parameters)
-    materials.require_small_contacts(constants)
+    materials.require_small_contacts(parameters)
     overlap = constants["equilibriumOverlap"]
     wanted, lines = parameters.pieces, []
     if cell is not None and len(_pieces(position, radius, tolerance)) != wanted:

@@ -110,7 +110,7 @@ def derived(scene, schedule):
         "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
         **{name: constants[name] for name in OF_CONTACT},
         **derived_materials(grains),
-        **({name: constants["bond"][name] for name in OF_BOND} if constants["bond"] else {}),
+        **({name: constants["bond"][name] for name in OF_BOND} if constants.get("bond") else {}),
         "timeStep": scene.time_step,
         "steps": schedule.steps,
         **scene.derived,

@@ -17,7 +17,7 @@ from analysis.runs.files import RunFolderError
 from analysis.runs.format import BROKEN_BONDS, CHANNELS, RESTING
 from analysis.version import commit, version
 from yade_scripts.experiments import collision
-from yade_scripts.materials import contact_constants
+from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import InputError, one_line
 from yade_scripts.run.ensemble import (
     DEVICE,
@@ -137,7 +137,7 @@ class _Run:
 
     def __post_init__(self):
         self.begun = time.monotonic()
-        constants = contact_constants(self.given, self.given.neck)
+        constants = pair_constants(self.given, neck=self.given.neck)
         self.scene = scene = collision.prepare(self.given, 1, constants)
         given = scene.parameters
         require_countable(given.duration, scene.time_step)
@@ -165,7 +165,7 @@ class _Run:
         made = {"versions": {"contact_law": version(), "python": sys.version.split()[0], "numpy": np.__version__}}
         made |= {"commit": commit(), "device": self.library.device}
         self.record = record_of(collision.KIND, scene, schedule, made)
-        self.known = {**scene.constants, **self.record["derived"], **(scene.constants["bond"] or {})}
+        self.known = {**scene.constants, **self.record["derived"], **scene.constants.get("bond", {})}
         self.touch = derived.get("firstTouch", 0.0)
         checks = set(range(0, schedule.samples + 1, max(1, schedule.samples // CHECKS))) - {0}
         if not given.endWhenApart:
