@@ -16,6 +16,7 @@ from ..figures.style import NANO
 from ..printable import Refused
 from ..progress import progress
 from ..runs.files import replacing, require_output
+from ..runs.folder import shown
 from .fields import exported_states
 
 ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
@@ -70,8 +71,8 @@ def _view(run, axes):
 
 def _grains(parameters):
     """'ice, γ = 0.1 J/m²' of what a run's parameters say of its grains."""
-    material, energy = str(parameters.get("material", "")), parameters.get("surfaceEnergy")
-    return material if energy is None or "," in material else f"{material}, γ = {energy:g} J/m²"
+    material, energy = str(parameters.get("material", "")), shown(parameters, "surfaceEnergy")
+    return material if energy is None else f"{material}, γ = {energy:g} J/m²"
 
 
 def _frame(exported, axes, colours, legend, view, pixel, grains):

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from PIL import Image  # with which matplotlib itself writes PNGs
 
 from ..runs.files import replacing
+from ..runs.folder import shown
 from ..runs.format import COLLISION
 
 NANO = 1e9
@@ -88,9 +89,8 @@ def run_title(run, addition=None):
     }
     parts = []
     for name, text in known.items():
-        value = run.parameters.get(name)
-        several = name == "surfaceEnergy" and "," in str(run.parameters.get("material"))  # each with its own
-        if isinstance(value, (int, float)) and (value or name != "impact") and not several:
+        value = shown(run.parameters, name)
+        if isinstance(value, (int, float)) and (value or name != "impact"):
             parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
     return ", ".join(parts + [addition] * bool(addition))
 

@@ -152,10 +152,15 @@ class RunFolder:
 
 def settings(parameters):
     """'packing cpe, velocity 10 m/s, ...': the parameters SHOWN of a run's."""
-    given = {name: parameters.get(name) for name in SHOWN}
-    if "," in str(given["material"]):  # two, each with its own
-        del given["surfaceEnergy"]
-    return ", ".join(_setting(name, value) for name, value in given.items() if value not in (None, ""))
+    given = ((name, shown(parameters, name)) for name in SHOWN)
+    return ", ".join(_setting(name, value) for name, value in given if value not in (None, ""))
+
+
+def shown(parameters, name):
+    """A run's parameter; None where it has none, and for the surface energy of two materials, which have each their
+    own."""
+    several = name == "surfaceEnergy" and "," in str(parameters.get("material"))
+    return None if several else parameters.get(name)
 
 
 def _setting(name, value):
