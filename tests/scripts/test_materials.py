@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from running import collide, completed, make_packing, read_arrays, refusal, stop_midway, study
+from running import COMPRESS, collide, completed, make_packing, read_arrays, refusal, stop_midway, study
 
 from analysis.export.formats import write_xyz
 from analysis.export.viewer import write_view
@@ -97,6 +97,21 @@ def test_springs_that_are_left_out_store_and_lose_nothing(tmp_path, engine, left
     others = {"sliding", "rolling", "twisting"} - {left_out}
     assert all(history[name].any() for name in others)
     assert not history[left_out].any() and not history[f"{left_out}Dissipation"].any()
+
+
+def test_a_sphere_cut_out_of_a_mixed_cell_keeps_the_materials_of_its_grains(tmp_path):
+    cell = f"{BOTH} materialFraction=0.4 grains=64 strainRate=1e-4 finalFilling=0.25 states=2".split()
+    completed(tmp_path, *cell, script=COMPRESS)
+    state = sorted((tmp_path / "run" / "states").iterdir())[-1]
+    done = make_packing(tmp_path, "a.npz", f"from={state}", "radius=4.5")
+    assert done.returncode == 0, done.stderr
+    packing, run = packings.load(tmp_path / "a.npz"), open_run(tmp_path / "run")
+    assert packing.parameters["materials"] == run.derived["materials"] and set(packing.kind) == {0, 1}
+    pairs = packings.contacts(packing)
+    rest = [constants_of(THEORY[i], 1e-7, THEORY[j], 1e-7).equilibrium_overlap for i, j in packing.kind[pairs]]
+    assert -surface_gaps(packing.position, packing.radius, pairs) == pytest.approx(rest, rel=0.06)
+    refused = make_packing(tmp_path, "b.npz", f"from={tmp_path / 'a.npz'}")
+    assert "of several materials; must be of one" in refusal(refused)
 
 
 def test_target_and_projectile_of_different_materials_move_about_their_centre_of_mass():

@@ -5,12 +5,14 @@ neither slid, rolled nor twisted."""
 
 import os
 from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 
 import numpy as np
 
 from analysis.runs.files import RunFolderError, array_names, read_bytes
 from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
+from yade_scripts.materials import overlaps
 from yade_scripts.packings import Packing, PackingError, centred, random_stream
 from yade_scripts.packings.packing import OF_CONTACTS, brought_to_rest, largest_cluster, randomly_turned
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, one_line, parameter
@@ -34,10 +36,11 @@ class PeriodicState:
     radius: np.ndarray  # (N,)
     contact_pairs: np.ndarray  # (M, 2)
     cell_size: np.ndarray  # (3,)
-    overlap: float  # of two grains at rest
-    material: dict = field(default_factory=dict)  # values of OF_CONTACTS, as far as they are known
+    overlap: float | np.ndarray  # of two grains at rest; of several materials (K, K)
+    material: dict = field(default_factory=dict)  # values of OF_CONTACTS, as far as they are known, or "materials"
     axis: int | None = None  # between walls: across them
     walls: np.ndarray | None = None  # (2,), their places
+    kind: np.ndarray | None = None  # (N,) which of several materials
 
 
 def holds(path, name):
@@ -56,20 +59,30 @@ def record_of_state(path):
     return record
 
 
+def _materials_in(derived):
+    """(what a packing says of its materials, overlap [m] at rest) of the constants in a run's record."""
+    if not derived.get("materials"):
+        return {name: float(derived[name]) for name in OF_CONTACTS if name in derived}, float(
+            derived["equilibriumOverlap"]
+        )
+    each = [SimpleNamespace(grainRadius=derived["grainRadius"], **own) for own in derived["materials"]]
+    return {"materials": derived["materials"]}, overlaps(each)
+
+
 def read_periodic_state(path):
     """PeriodicState of RUN/states/NNNNNN.npz; raises PackingError when it is none."""
     try:
         record = record_of_state(path)
         state, derived = read_state(path, COMPRESSION, record.get("format", FORMAT)), record["derived"]
-        overlap = float(derived["equilibriumOverlap"])
-        material = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
+        material, overlap = _materials_in(derived)
         if state.cell_size is None:
             raise ValueError("not of a periodic cell")
     except NO_RUN as error:
         must = "must be a state of a compression, RUN/states/NNNNNN.npz"
         raise PackingError(f"from = {path}: {one_line(error)}; {must}") from None
-    walls = () if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
-    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, overlap, material, *walls)
+    walls = (None, None) if state.plane_axis is None else (int(state.plane_axis[0]), np.sort(state.plane_position))
+    about = overlap, material, *walls, state.material
+    return PeriodicState(state.position, state.radius, state.contact_pairs, state.cell_size, *about)
 
 
 def cut(state, parameters, index=0):
@@ -104,8 +117,8 @@ def cut(state, parameters, index=0):
     if len(kept) < 2:
         raise PackingError(f"radius = {parameters.radius:g}: leaves {len(kept)} grains; must leave 2 or more")
     about = dict(packing="compressed", aggregateRadius=reach, filling=len(kept) / parameters.radius**3)
-    about |= dict(state.material, index=index, dropped=len(inside) - len(kept))
-    packing = Packing(position[inside[kept]], state.radius[inside[kept]], parameters.seed, about)
+    about |= dict(index=index, dropped=len(inside) - len(kept))
+    packing = Packing(position, state.radius, parameters.seed, state.material, state.kind).of(inside[kept], **about)
     rested = brought_to_rest(packing, grain_radius, state.overlap, pairs)
     centre = rested.position.mean(axis=0)
     return replace(rested, position=randomly_turned(rested.position - centre, stream, False))
@@ -116,21 +129,21 @@ def largest_piece_of_run(path):
     try:
         run = open_run(path)
         state = run.last
-        overlap, grain_radius = float(run.derived["equilibriumOverlap"]), float(run.derived["grainRadius"])
+        (material, overlap), grain_radius = _materials_in(run.derived), float(run.derived["grainRadius"])
         if state.cell_size is not None or state.contact_bonded.any():
             raise ValueError("periodic, or with sintered bonds")
     except NO_RUN as error:
         must = "must be a run folder of a collision without bonds"
         raise PackingError(f"after = {path}: {one_line(error)}; {must}") from None
     kept, pairs = largest_cluster(len(state.radius), state.contact_pairs)
-    about = {"packing": "collided", "of": len(state.radius)}
-    packing = Packing(state.position[kept], state.radius[kept], int(run.parameters.get("seed", 0)), about)
+    seed, about = int(run.parameters.get("seed", 0)), {"packing": "collided", "of": len(state.radius)}
+    packing = Packing(state.position, state.radius, seed, material, state.material).of(kept, **about)
     rested = brought_to_rest(packing, grain_radius, overlap, pairs)
-    return replace(rested, position=centred(rested.position, rested.radius))
+    return replace(rested, position=centred(rested.position, rested.radius, rested.density))
 
 
 def turned(packing, seed, index=0):
     """The packing in a random orientation; one in the plane z = 0 stays in it."""
     planar = not np.any(packing.position[:, 2])
     position = randomly_turned(packing.position, random_stream(seed, index), planar)
-    return Packing(position, packing.radius, seed, {**packing.parameters, "index": index})
+    return replace(packing, position=position, seed=seed, parameters={**packing.parameters, "index": index})

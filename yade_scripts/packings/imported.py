@@ -132,6 +132,8 @@ def _material_of(path):
         except NO_RUN as error:
             must = "must be in RUN/states, or material be given"
             raise PackingError(f"{path}: a state of a run, but {one_line(error)}; {must}") from None
+    if made_of.get("materials"):
+        raise PackingError(f"{path}: of several materials; must be of one, or material be given")
     return {name: made_of[name] for name in OF_CONTACTS if name in made_of}
 
 
