@@ -201,8 +201,9 @@ def prepare(parameters, threads, constants=None):
         controls.append(_impact_step(parameters, until))
         short, step = parameters.impactStepFraction, parameters.stepFraction
         reason = f"as given: {short:g} t0 until {until:.4g} s, then {step:g} t0"
-    if parameters.endWhenApart:
-        controls.append(_end_when_apart(parameters, constants, aggregate_radius, touch))
+    rest = Rest(parameters, constants, aggregate_radius, touch) if parameters.endWhenApart else None
+    if rest:
+        controls.append(_end_when_apart(rest))
 
     def build():
         from yade_scripts.run import scene as yade_scene
@@ -212,7 +213,7 @@ def prepare(parameters, threads, constants=None):
         if parameters.target == WALL:
             yade_scene.add_plane(AXIS, 0.0, materials[0])
 
-    resting = {RESTING: np.nan} if parameters.endWhenApart else {}
+    resting = {RESTING: np.nan} if rest else {}
     return Scene(
         parameters=parameters,
         constants=constants,
@@ -220,6 +221,7 @@ def prepare(parameters, threads, constants=None):
         grains=arrays_of_grains(pair),
         build=build,
         placed=(pair, velocities),
+        rest=rest,
         series=lambda state: {**series(state, aggregate_radius), **resting},
         law={"neck": parameters.neck},
         step_choice=reason,
@@ -304,18 +306,37 @@ def series(state, aggregate_radius):
     return {"d": d, "v": v, "contacts_between": int(np.count_nonzero(sides[:, 0] != sides[:, 1]))}
 
 
-def _end_when_apart(parameters, constants, aggregate_radius, touch):
-    """Scene.control of endWhenApart: pieces have been at rest for a while."""
-    known = {**constants, **(constants.get("bond") or {}), **derived_materials(parameters)}
-    known["aggregateRadius"] = aggregate_radius
-    known.update(grainRadius=parameters.grainRadius, density=parameters.density)
-    begin = -np.inf if touch is None else touch
+class Rest:
+    """Whether a collision has come to rest: for endWhenApart, of a scene of YADE or on a device.
+
+    touch: when aggregates first touch [s], None: never; aggregate_radius [m]."""
+
+    def __init__(self, parameters, constants, aggregate_radius, touch):
+        self._known = {**constants, **(constants.get("bond") or {}), **derived_materials(parameters)}
+        self._known.update(aggregateRadius=aggregate_radius, grainRadius=parameters.grainRadius)
+        self._known.update(density=parameters.density)
+        self._touch, self._end = touch, parameters.duration
+        # before it none has had the time to rebound
+        self.earliest = -np.inf if touch is None else touch + rebound_time(parameters.radius, constants["timeUnit"])
+
+    def seems_so(self, state):
+        """1.0 or 0.0: whether no piece seems to change any more (analysis.measures.decided)."""
+        begin = -np.inf if self._touch is None else self._touch
+        return float(has_come_to_rest(with_plate(state), self._known, begin, self._end))
+
+    def needed(self, time):
+        """For how long [s] it must have seemed so at a time [s]."""
+        return RECENT * (time - (self._touch or 0.0))
+
+
+def _end_when_apart(rest):
+    """Scene.control of endWhenApart."""
 
     def control(recorder, state):
         if not recorder.is_one_of(CHECKS):
             return False
-        recorder.note(RESTING, float(has_come_to_rest(with_plate(state), known, begin, parameters.duration)))
-        recent = recorder.recent(RESTING, RECENT * (state["time"] - (touch or 0.0)))
+        recorder.note(RESTING, rest.seems_so(state))
+        recent = recorder.recent(RESTING, rest.needed(state["time"]))
         return bool(np.all(recent[np.isfinite(recent)]))
 
     return control

@@ -42,7 +42,9 @@ class Scene:
     grains: Mapping  # arrays (N,) that every state has: aggregate, of several materials material and mass
     build: Callable[[], None]  # makes the bodies (and the cell)
     series: Callable[[Mapping], Mapping[str, Any]]  # state -> {name: value} of the kind's own series
-    placed: tuple | None = None  # packings and their velocities, of a collision, by which a device starts it
+    # Of a collision, for a device: packings and their velocities, and with endWhenApart when it is at rest.
+    placed: tuple | None = None
+    rest: Any = None
     law: Mapping = field(default_factory=dict)  # attributes of the contact law, in the engine and in the functors
     energy_is_conserved: bool = True  # whether all channels together are constant
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False

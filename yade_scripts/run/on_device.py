@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from analysis.measures.compression import of_sides
-from analysis.measures.decided import RECENT, has_come_to_rest, rebound_time
 from analysis.runs.files import RunFolderError
 from analysis.runs.format import BROKEN_BONDS, CHANNELS, RESTING
 from analysis.version import commit, version
@@ -150,7 +149,7 @@ class _Run:
             raise
 
     def _start(self, scene, schedule):
-        given, derived = scene.parameters, scene.derived
+        given = scene.parameters
         self.collision = Collision(
             self.library,
             _grains(scene),
@@ -165,14 +164,9 @@ class _Run:
         made = {"versions": {"contact_law": version(), "python": sys.version.split()[0], "numpy": np.__version__}}
         made |= {"commit": commit(), "device": self.library.device}
         self.record = record_of(collision.KIND, scene, schedule, made)
-        self.known = {**scene.constants, **self.record["derived"], **scene.constants.get("bond", {})}
-        self.touch = derived.get("firstTouch", 0.0)
-        checks = set(range(0, schedule.samples + 1, max(1, schedule.samples // CHECKS))) - {0}
-        if not given.endWhenApart:
-            checks = set()
-        quiet = self.touch + rebound_time(given.radius, scene.constants["timeUnit"])
         between = schedule.interval * scene.time_step
-        self.checks = {number for number in checks if number * between > quiet}
+        checks = range(0, schedule.samples + 1, max(1, schedule.samples // CHECKS))[1:] if scene.rest else ()
+        self.checks = {number for number in checks if number * between > scene.rest.earliest}
         self.stops = sorted(set(schedule.states) | self.checks | {schedule.samples})
         self.sample = 0
 
@@ -191,9 +185,8 @@ class _Run:
         if not np.isfinite(state["position"]).all():
             return f"failed: positions are not finite at {state['time']:.4g} s"
         if self.sample in self.checks:
-            rests = has_come_to_rest(state, self.known, self.touch, self.scene.parameters.duration)
-            self.resting.append((self.sample, state["time"], float(rests)))
-            since = state["time"] - RECENT * (state["time"] - self.touch)
+            self.resting.append((self.sample, state["time"], self.scene.rest.seems_so(state)))
+            since = state["time"] - self.scene.rest.needed(state["time"])
             at_end |= all(rests for _, when, rests in self.resting if when >= since)
         if at_end or self.sample in self.schedule.states:
             self.folder.write_state(self.states, state)
@@ -204,12 +197,13 @@ class _Run:
         """The state at the latest sample, as contact_law.snapshot() has it, with the arrays of the scene's grains."""
         position, velocity, spin = self.collision.motion()
         pairs, force, bonded = self.collision.contacts()
-        samples = self.collision.samples()
-        found = {"time": float(samples["time"][-1]), "position": position, "velocity": velocity}
+        time = self.collision.step * self.scene.time_step
+        found = {"time": time, "position": position, "velocity": velocity}
         found |= {"angular_velocity": spin, "radius": self.collision.radius, **self.scene.grains}
         found |= {"contact_pairs": pairs, "contact_normal_force": force, "contact_bonded": bonded}
         if self.scene.parameters.neck:
             found["contact_neck"] = np.where(bonded, self.scene.parameters.neck, 0.0)
+            samples = self.collision.samples()
             found["bonds_broken"] = np.array([samples[name][-1] for name in BROKEN_BONDS], dtype=int)
         return found
 
@@ -239,7 +233,7 @@ class _Run:
         counts = ("contacts", "contacts_between", "formed", "broken", *(BROKEN_BONDS if given.neck else ()))
         found = {name: samples[name] for name in ("time", *CHANNELS)}
         found |= {"d": d, "v": v, **{name: samples[name].astype(int) for name in counts}}
-        if given.endWhenApart:
+        if self.scene.rest:
             found[RESTING] = np.full(len(d), np.nan)
             for number, _, rests in self.resting:
                 found[RESTING][number] = rests
