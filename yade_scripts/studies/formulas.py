@@ -5,8 +5,10 @@ Tatsuuma et al. 2019, compressive strength as in Kataoka et al. 2013; states ser
 clusters a point: fillings, surface energy, grain radius, critical rolling displacement and material, half the rate, and
 four times as many grains at two points. Rows stand in the order of their worth."""
 
+from itertools import product
+
 FILLINGS = ("0.1", "0.2", "0.3", "0.4", "0.5")
-SEEDS = range(1, 9)
+SEEDS = range(1, 5), range(5, 9)  # four clusters of each set first
 BASE = {"grains": 1024, "strainRate": "1e-6"}
 MIDDLE = {**BASE, "finalFilling": "0.2"}
 STEP = 0.25  # t0
@@ -15,11 +17,11 @@ STEP = 0.25  # t0
 CELLS = [
     *({**BASE, "finalFilling": filling} for filling in FILLINGS),
     {**MIDDLE, "surfaceEnergy": "0.02"},
-    *({**MIDDLE, "finalFilling": filling, "grains": 4096} for filling in ("0.1", "0.3")),
     *({**MIDDLE, "grainRadius": radius} for radius in ("5e-8", "1e-6")),
     *({**MIDDLE, "criticalRolling": rolling} for rolling in ("2e-10", "32e-10")),
     {**MIDDLE, "strainRate": "5e-7"},
     {**MIDDLE, "material": "silicate"},
+    *({**MIDDLE, "finalFilling": filling, "grains": 4096} for filling in ("0.1", "0.3")),
 ]
 SHORT = {"grains": "N", "strainRate": "Cv", "finalFilling": "to", "surfaceEnergy": "gamma", "grainRadius": "r"}
 SHORT |= {"criticalRolling": "xi"}
@@ -30,11 +32,11 @@ Units: strainRate: 1/t0; surfaceEnergy: J/m^2; grainRadius, criticalRolling: m; 
 def tables():
     """{size: (rows, head)}."""
     found = []
-    for parameters in CELLS:
+    for seeds, parameters in product(SEEDS, CELLS):
         row = {"!SCRIPT": "yade_scripts/compress.py", "material": "ice", "stepFraction": STEP, "stretch": "x"}
         row |= parameters
         varied = [f"{short}{parameters[name]}" for name, short in SHORT.items() if name in parameters]
-        for seed in SEEDS:
+        for seed in seeds:
             name = "-".join([row["material"], *varied, f"s{seed}"])
             found.append({"description": name, **row, "seed": seed, "threads": 1, "out": f"runs/formulas/{name}"})
     return {"cells": (found, HEAD)}
