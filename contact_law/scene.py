@@ -20,6 +20,7 @@ ROWS = {
     "plane_contact_normal_force": (float, ()),
     "cell_size": (float, ()),
 }
+material_changes = 0  # number of calls of set_material()
 
 
 def snapshot():
@@ -97,6 +98,7 @@ def set_material(material, **properties):
     """
     from yade.wrapper import JKRMat, Omega
 
+    global material_changes
     if not isinstance(material, JKRMat):
         material = Omega().materials[material]
     names = ("young", "poisson", "surfaceEnergy", "criticalRolling", "viscoelasticTime")
@@ -104,6 +106,7 @@ def set_material(material, **properties):
         raise ValueError(f"set_material(): {name}: must be one of {', '.join(names)}")
     kept = {name: getattr(material, name) for name in ("density", *names)}
     _law("set_material()").setMaterial(material, JKRMat(**{**kept, **properties}))
+    material_changes += 1
 
 
 def _law(call):

@@ -2,6 +2,7 @@
 
 from dataclasses import asdict, dataclass
 from functools import lru_cache
+from math import pi
 
 import numpy as np
 
@@ -212,10 +213,22 @@ def overlaps(each):
     return of_pairs(each, lambda pair: pair["equilibriumOverlap"])
 
 
-def derived_materials(grains):
-    """What run.json has of several materials: their properties, and F_c delta_c [J] of each pair of two grains of
-    grainRadius; {} of one."""
-    each = grains.of_each()
+def derived_grains(each, constants):
+    """What run.json has, under `derived`, of grains of these materials: constants (of a contact) of the first.
+
+    each: a list of objects with the attributes OF_MATERIAL, grainRadius and `material`, the name."""
+    first = each[0]
+    return {
+        **{name: getattr(first, name) for name in (*OF_MATERIAL, "grainRadius")},
+        "grainMass": 4 / 3 * pi * first.grainRadius**3 * first.density,
+        **{name: constants[name] for name in OF_CONTACT},
+        **derived_materials(each),
+    }
+
+
+def derived_materials(each):
+    """The same of several materials: their properties, and F_c delta_c [J] of each pair of two grains of grainRadius;
+    {} of one."""
     if len(each) == 1:
         return {}
     energy = lambda pair: pair["pullOffForce"] * pair["pullOffOverlap"]

@@ -125,7 +125,7 @@ def test_a_script_that_was_stopped_goes_on_to_the_same_bits(script, tmp_path, nu
     assert same_bits(tmp_path / "run", straight / "run")
 
 
-def test_engines_that_are_replaced_and_grains_that_come_are_recorded(script, tmp_path):
+def test_engines_materials_and_grains_that_change_are_recorded(script, tmp_path):
     file = tmp_path / "scene.py"
     more = """
 O.engines = functors
@@ -135,11 +135,19 @@ O.bodies.append(utils.sphere(position[0] - 5 * R, R, material=ice))
 O.dt *= 10
 O.engines = [JKRWadaEngine(subSteps=10)]
 O.run(50, True)
+contact_law.set_material(ice, surfaceEnergy=0.05)
+O.run(50, True)
 """
     file.write_text(open(script).read() + more)
-    run = recorded(tmp_path, str(file), "fused")
+    run = recorded(tmp_path, str(file), "fused two")
+    assert [(own["name"], own["surfaceEnergy"]) for own in run.derived["materials"]] == [
+        ("sand", 0.025),
+        ("ice", 0.1),
+        ("ice", 0.05),
+    ]
+    assert np.all(run.last.material[:60] == np.where(run.start.material, 2, 0)) and run.derived["pullOffEnergies"][2]
     assert len(run.start.radius) == 60 and len(run.last.radius) == 61 and run.last.aggregate[-1] == 0
-    assert len(run.history["time"]) == 11 + 10 + 5
+    assert len(run.history["time"]) == 11 + 10 + 5 + 5
 
 
 def test_misuse_and_failures_have_one_line_and_no_end(script, tmp_path):
@@ -151,6 +159,8 @@ def test_misuse_and_failures_have_one_line_and_no_end(script, tmp_path):
         "number": ("O.bodies[7].state.pos[1]", '"wide"'),
         "later": ('{"y": O.bodies[7].state.pos[1],', '{("y" if O.iter < 50 else "z"): 1,'),
         "after": ("O.run(steps", "O.ruin(steps"),
+        "exit": ("O.run(steps - O.iter, True)", "exit(1)"),
+        "again": ("O.run(steps", "O.resetTime(), O.run(steps"),
         "early": ("O.engines = [JKRWadaEngine(subSteps=10)] if fused else functors", ""),
     }
     for name, (old, new) in changes.items():
@@ -160,6 +170,7 @@ def test_misuse_and_failures_have_one_line_and_no_end(script, tmp_path):
         assert done.returncode == 1 and not os.path.exists(tmp_path / name / "ended")
     assert "every = 0.5" in errors["every"] and "series: kinetic" in errors["name"]
     assert "could not convert" in errors["number"] and "series: y is missing" in errors["later"]
+    assert "O.resetTime(): a run is being recorded" in errors["again"]
     assert "'ruin'" in errors["after"] and "must come after" in errors["early"]
     assert open_run(tmp_path / "later").record["status"].startswith("failed: series")
     (tmp_path / "scene.py").write_text(text)

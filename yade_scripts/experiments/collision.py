@@ -312,7 +312,7 @@ class Rest:
     touch: when aggregates first touch [s], None: never; aggregate_radius [m]."""
 
     def __init__(self, parameters, constants, aggregate_radius, touch):
-        self._known = {**constants, **(constants.get("bond") or {}), **derived_materials(parameters)}
+        self._known = {**constants, **(constants.get("bond") or {}), **derived_materials(parameters.of_each())}
         self._known.update(aggregateRadius=aggregate_radius, grainRadius=parameters.grainRadius)
         self._known.update(density=parameters.density)
         self._touch, self._end = touch, parameters.duration
@@ -429,7 +429,7 @@ def expected(parameters, run):
     open_names = ("radius", "filling", "grains")
     found = {name: held.get(name) for name in open_names if getattr(parameters, name) is None}
     first = "projectilePacking" if parameters.target == WALL else "targetPacking"
-    if derived.get("materials", []) != derived_materials(parameters).get("materials", []):
+    if derived.get("materials", []) != derived_materials(parameters.of_each()).get("materials", []):
         found["materials"] = f"{parameters.materials} as it is now"
     for name, of in (("file", first), ("projectileFile", "projectilePacking")):
         file, kept = getattr(parameters, name), (derived.get(of) or {}).get(SUM)

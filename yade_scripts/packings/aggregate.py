@@ -196,7 +196,7 @@ def _mixed(packing, parameters, index):
 
 
 def _of_materials(packing, parameters, kind):
-    about = {**packing.parameters, "materials": derived_materials(parameters)["materials"]}
+    about = {**packing.parameters, "materials": derived_materials(parameters.of_each())["materials"]}
     return replace(packing, kind=kind.astype(np.int32), parameters=about)
 
 

@@ -1,13 +1,13 @@
 """The interface of a kind of run, an instance of Kind for each file of experiments/, and when a run is sampled."""
 
 from dataclasses import dataclass, field
-from math import ceil, pi
+from math import ceil
 from typing import Any, Callable, Mapping, NamedTuple
 
 import numpy as np
 
 from analysis.runs.format import RunKind
-from yade_scripts.materials import OF_BOND, OF_CONTACT, OF_MATERIAL, derived_materials
+from yade_scripts.materials import OF_BOND, derived_grains
 
 FEWEST_SAMPLES = 300
 MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
@@ -106,12 +106,9 @@ class Schedule:
 
 def derived(scene, schedule):
     """The entry `derived` of run.json: the grains' material, what follows from it and the parameters (SI)."""
-    grains, constants = scene.parameters, scene.constants
+    constants = scene.constants
     return {
-        **{name: getattr(grains, name) for name in (*OF_MATERIAL, "grainRadius")},
-        "grainMass": 4 / 3 * pi * grains.grainRadius**3 * grains.density,
-        **{name: constants[name] for name in OF_CONTACT},
-        **derived_materials(grains),
+        **derived_grains(scene.parameters.of_each(), constants),
         **({name: constants["bond"][name] for name in OF_BOND} if constants.get("bond") else {}),
         "timeStep": scene.time_step,
         "steps": schedule.steps,

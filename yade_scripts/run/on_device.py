@@ -30,7 +30,7 @@ from yade_scripts.run.ensemble import (
     Library,
 )
 from yade_scripts.run.folder import RunFolder
-from yade_scripts.run.kind import Schedule
+from yade_scripts.run.kind import Schedule, derived
 from yade_scripts.run.parameters import SPRINGS
 from yade_scripts.run.script import record_of
 from yade_scripts.time_step import require_countable
@@ -163,7 +163,7 @@ class _Run:
         )
         made = {"versions": {"contact_law": version(), "python": sys.version.split()[0], "numpy": np.__version__}}
         made |= {"commit": commit(), "device": self.library.device}
-        self.record = record_of(collision.KIND, scene, schedule, made)
+        self.record = record_of(collision.KIND.name, given.as_dict(), derived(scene, schedule), made)
         between = schedule.interval * scene.time_step
         checks = range(0, schedule.samples + 1, max(1, schedule.samples // CHECKS))[1:] if scene.rest else ()
         self.checks = {number for number in checks if number * between > scene.rest.earliest}

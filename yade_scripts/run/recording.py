@@ -1,6 +1,7 @@
 """The run folder of a script of one's own, while it runs: what contact_law.record() gives."""
 
 import atexit
+import builtins
 import functools
 import signal
 import socket
@@ -15,14 +16,15 @@ import numpy as np
 import yade.wrapper as yade
 from yade.wrapper import Omega
 
+import contact_law
 from analysis.runs.format import Quantity, RunKind, same
-from yade_scripts.materials import OF_CONTACT, OF_MATERIAL, PROPERTIES
+from yade_scripts.materials import PROPERTIES, derived_grains, derived_materials
 from yade_scripts.parameters import one_line
 from yade_scripts.run import checkpoint
 from yade_scripts.run import recorder as sampling
 from yade_scripts.run.folder import RunFolder
 from yade_scripts.run.kind import Schedule
-from yade_scripts.run.script import hardware, made_with
+from yade_scripts.run.script import made_with, record_of
 
 KIND = "script"
 SAVE = "from yade_scripts.run import recorder; recorder.current.save()"
@@ -39,14 +41,14 @@ class Recording(sampling.Recorder):
         if series is not None and not callable(series):
             raise TypeError(f"series = {series!r}: must be a function that returns {{name: number}}")
         self._series, self._aggregate = series, aggregate or (lambda body: 0)
-        self._ids, self._materials, self._begun = None, [], time.monotonic()
+        self._described, self._materials, self._begun = None, [], time.monotonic()
         self._signals = None
         plain = {"grains": {}, "control": lambda recorder, state: False, "energy_is_conserved": False}
         own = SimpleNamespace(series=self._own, **plain)
         schedule = Schedule(0, every, range(0, sys.maxsize, states))
         super().__init__(None, schedule, RunKind(KIND, ()), own)
         self._next_write = 0.0  # the first row is written at once
-        self.run = self._description(parameters or {})
+        self.run = self._record(parameters or {})
         self.folder = RunFolder(str(folder), overwrite, resume)
         wall_time = lambda: time.monotonic() - self._begun
         self._writer = checkpoint.CheckpointWriter(self.folder, self.run, self, wall_time, interval)
@@ -128,6 +130,9 @@ class Recording(sampling.Recorder):
     def _go_on(self, saved):
         saved.require(self._difference(saved), made_with(), inf, ended=False)
         self.folder.resume()
+        self.run["derived"] = saved.run["derived"]
+        if several := saved.run["derived"].get("materials"):
+            self._materials = [self._material_of(**own) for own in several]
         self._begun -= saved.wallTime
         self.resume(saved.rows, saved.columns, saved.states)
         threads = [engine.threads for engine in _fused(Omega().engines)]
@@ -148,12 +153,15 @@ class Recording(sampling.Recorder):
 
     def _snapshot(self):
         state = super()._snapshot()
-        if self._ids is None or not np.array_equal(state["ids"], self._ids):
-            self._ids = state["ids"]
-            self._of_grains = self._arrays([Omega().bodies[int(number)] for number in self._ids], state["radius"])
-        edges = (
-            np.array(Omega().cell.prevHSize) if Omega().periodic else np.zeros((3, 3))
-        )  # at the moment of the forces
+        described = np.append(contact_law.scene.material_changes, state["ids"])
+        if not np.array_equal(described, self._described):
+            self._described, known = described, len(self._materials)
+            self._of_grains = self._arrays([Omega().bodies[int(number)] for number in state["ids"]], state["radius"])
+            if len(self._materials) > known:
+                self.run["derived"] |= derived_materials(self._materials)
+                self._write_run("running")
+        # at the moment of the forces
+        edges = np.array(Omega().cell.prevHSize) if Omega().periodic else np.zeros((3, 3))
         sheared = {"cell_vectors": edges} if np.any(edges - np.diag(np.diag(edges))) else {}
         return {**state, **self._of_grains, **sheared}
 
@@ -162,7 +170,7 @@ class Recording(sampling.Recorder):
         kinds = np.array([self._material(body.material) for body in bodies], dtype=np.int32)
         mass = np.array([body.state.mass for body in bodies])
         aggregate = np.array([self._aggregate(body) for body in bodies], dtype=np.int32)
-        density = np.array([material["density"] for material in self._materials])[kinds]
+        density = np.array([own.density for own in self._materials])[kinds]
         if len(self._materials) == 1 and np.allclose(mass, 4 / 3 * pi * density * radius**3, rtol=1e-6, atol=0):
             return {"aggregate": aggregate}
         return {"aggregate": aggregate, "material": kinds, "mass": mass}
@@ -171,10 +179,14 @@ class Recording(sampling.Recorder):
         """The number of a grain's material among those that were met so far."""
         if not isinstance(material, yade.JKRMat):
             raise sampling.RunFailed(f"a grain's material is a {type(material).__name__}; must be JKRMat")
-        own = {"name": material.label or "JKRMat", **{name: getattr(material, name) for name in OF_MATERIAL}}
+        properties = {name: getattr(material, name) for name in PROPERTIES}
+        own = self._material_of(material.label or "JKRMat", **properties)
         if own not in self._materials:
             self._materials.append(own)
         return self._materials.index(own)
+
+    def _material_of(self, name, **properties):
+        return SimpleNamespace(material=name, grainRadius=self._radius, **properties)
 
     def _own(self, state):
         """The script's series, whose names are those of the first row."""
@@ -187,49 +199,29 @@ class Recording(sampling.Recorder):
             raise ValueError(f"series: {min(missing)} is missing; must be there as in the first row")
         return {name: float(value) for name, value in found.items()}
 
-    def _description(self, parameters):
+    def _record(self, parameters):
         """run.json, but for what changes while the run is under way."""
         grains = [body for body in Omega().bodies if isinstance(body.shape, yade.Sphere)]
         if not grains or not any(map(_has_the_law, Omega().engines)):
             raise ValueError("record(): no spheres, or no engines with this contact law; must come after both")
-        radius = np.array([body.shape.radius for body in grains])
+        radius, made_of = np.array([body.shape.radius for body in grains]), grains[0].material
+        self._radius = float(np.median(radius))
         self._arrays(grains, radius)
-        first, usual = grains[0].material, float(np.median(radius))
-        own = {name: getattr(first, name) for name in OF_MATERIAL}
-        constants = _pair_constants(own, own, usual)
+        names = [own.material for own in self._materials]
+        first = SimpleNamespace(**vars(self._materials[0]), viscoelasticTime=made_of.viscoelasticTime)
+        constants = yade.Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(*2 * (made_of, self._radius))
         fused = [engine.subSteps for engine in _fused(Omega().engines)]
-        derived = {
-            **own,
-            "grainRadius": usual,
-            "grainMass": 4 / 3 * pi * usual**3 * first.density,
-            **{name: constants[name] for name in OF_CONTACT},
-            "timeStep": Omega().dt / (fused[0] if fused else 1),
-        }
-        several = len(self._materials) > 1
-        if several:
-            of_pair = lambda one, other: _pair_constants(one, other, usual)
-            energy = lambda pair: pair["pullOffForce"] * pair["pullOffOverlap"]
-            derived["materials"] = [{name: own[name] for name in ("name", *PROPERTIES)} for own in self._materials]
-            pairs = [[energy(of_pair(one, other)) for other in self._materials] for one in self._materials]
-            derived["pullOffEnergies"] = pairs
+        derived = derived_grains([first, *self._materials[1:]], constants)
+        derived["timeStep"] = Omega().dt / (fused[0] if fused else 1)
         every = {
-            "material": ",".join(own["name"] for own in self._materials),
+            "material": ",".join(names),
             "grains": len(grains),
-            "grainRadius": usual,
-            "surfaceEnergy": None if several else first.surfaceEnergy,
+            "grainRadius": self._radius,
+            "surfaceEnergy": None if len(names) > 1 else first.surfaceEnergy,
             "engine": "fused" if fused else "functors",
         }
         plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in parameters.items()}
-        return {
-            "kind": KIND,
-            "parameters": {**every, **plain},
-            "derived": derived,
-            "seed": plain.get("seed"),
-            **made_with(),
-            "hardware": hardware(),
-            "endedBy": None,
-            "outcome": None,
-        }
+        return record_of(KIND, {**every, **plain}, derived, made_with())
 
     def _write_run(self, status):
         reached = {"wallTime": time.monotonic() - self._begun, "timeReached": self.time, "status": status}
@@ -276,11 +268,6 @@ def _has_the_law(engine):
     )
 
 
-def _pair_constants(one, other, radius):
-    materials = [yade.JKRMat(**{name: own[name] for name in OF_MATERIAL}) for own in (one, other)]
-    return yade.Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(materials[0], radius, materials[1], radius)
-
-
 def _terminated(number, _frame):
     _end("interrupted")
     raise SystemExit(128 + number)
@@ -293,9 +280,9 @@ def _end(status):
 
 @functools.cache
 def _hook():
-    """O.engines = ... keeps the PyRunners, O.run() and the like raise what a row has met, and sys.exit(), which YADE
-    calls after a script or its exception, ends the recording."""
-    engines, leave = Omega.engines, sys.exit
+    """O.engines = ... keeps the PyRunners, O.run() and the like raise what a row has met, O.resetTime() is refused, and
+    sys.exit(), which YADE calls after a script or its exception, ends the recording, as exit() and quit() do."""
+    engines, leave, reset = Omega.engines, sys.exit, Omega.resetTime
 
     def replace(omega, others):
         recording = sampling.current
@@ -311,6 +298,11 @@ def _hook():
 
         return called
 
+    def reset_or_raise(omega):
+        if isinstance(sampling.current, Recording):
+            raise RuntimeError("O.resetTime(): a run is being recorded; must come before record() or after its end()")
+        reset(omega)
+
     def end_and_leave(code=None):
         error = sys.exc_info()[1]
         if isinstance(error, KeyboardInterrupt):
@@ -324,5 +316,6 @@ def _hook():
     Omega.engines = property(engines.fget, replace, doc=engines.__doc__)
     for name in ("run", "step", "wait"):
         setattr(Omega, name, raising(getattr(Omega, name)))
-    sys.exit = end_and_leave
+    Omega.resetTime = reset_or_raise
+    sys.exit = builtins.exit = builtins.quit = end_and_leave
     atexit.register(_end, "completed")

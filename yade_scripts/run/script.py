@@ -80,7 +80,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
 
     parameters, saved = scene.parameters, folder.checkpoint
     begun -= saved.wallTime if saved else 0.0  # before interruptions
-    run = record_of(kind, scene, schedule, made_with())
+    run = record_of(kind.name, parameters.as_dict(), derived(scene, schedule), made_with())
     wall_time = lambda: time.monotonic() - begun
     write = lambda status: folder.write_run({**run, "wallTime": wall_time(), "status": status})
     recorder, ending = Recorder(folder, schedule, kind.format, scene), None
@@ -124,13 +124,12 @@ def _carry_out(kind, scene, schedule, folder, begun):
     return code
 
 
-def record_of(kind, scene, schedule, made):
-    """What run.json holds before the run; made: as made_with() gives it."""
-    parameters = scene.parameters.as_dict()
+def record_of(name, parameters, derived, made):
+    """What run.json holds before the run; name: of the kind of run; made: as made_with() gives it."""
     return {
-        "kind": kind.name,
+        "kind": name,
         "parameters": parameters,
-        "derived": derived(scene, schedule),
+        "derived": derived,
         "seed": parameters.get("seed"),
         **made,
         "hardware": hardware(),
