@@ -37,7 +37,7 @@ require_libraries()
 from analysis.printable import printable, shell_line
 from analysis.runs.status import DONE, FAILED, RUNNING, WAITING
 from analysis.version import version_text
-from yade_scripts.parameters import one_line_errors, show, tell
+from yade_scripts.parameters import InputError, one_line, one_line_errors, show, tell
 from yade_scripts.run import on_device
 from yade_scripts.run.parameters import CORES
 from yade_scripts.run.script import StopSignals
@@ -152,8 +152,8 @@ def main(arguments):
         tell(f"{row.name}: {row.error}{'; the other rows are run' if len(wrong) < len(study.rows) else ''}", SCRIPT)
     try:
         states = study.run(stop, library)
-    except OSError as error:  # yade is missing, the disk is full
-        tell(f"{error.filename or study.folder.path}: {error.strerror}", SCRIPT)
+    except (InputError, OSError) as error:  # yade is missing, the disk is full
+        tell(one_line(error), SCRIPT)
         return 1
     stop.restore()
     return close(study, states, stop)

@@ -12,7 +12,7 @@ from running import PYTHON, TOP, call, collide, refusal
 from analysis.runs.format import PARAMETER_UNITS, PARAMETER_WORDS
 from yade_scripts import collide as from_python
 from yade_scripts.experiments import collision, compression
-from yade_scripts.parameters import ParameterError
+from yade_scripts.parameters import InputError, ParameterError
 from yade_scripts.runner.sweep import RunsFailed
 
 QUESTION = re.search(r"```python\n(from yade_scripts.*?)```", (Path(TOP) / "README.md").read_text(), re.S).group(1)
@@ -58,6 +58,9 @@ def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monk
         from_python(folder="own", radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
     assert "\n2 runs; 1 undecided" in capsys.readouterr().out
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(InputError, match="^yade: no such command on PATH; must be"):
+        from_python(radius=5, velocity=3)
 
 
 def test_units_and_words_of_parameters_are_the_scripts_own():

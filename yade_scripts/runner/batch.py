@@ -3,6 +3,7 @@
 import fcntl
 import multiprocessing
 import os
+import shutil
 import signal
 import subprocess
 from contextlib import suppress
@@ -111,6 +112,8 @@ class Worker:
     messages go as it starts; lock: the study's, or None, which is free again when the last worker has ended."""
 
     def __init__(self, log, nice, lock):
+        if not shutil.which("yade"):
+            raise InputError("yade: no such command on PATH; must be installed (make deps)")
         self.row = self._run = None  # the process of the run, as soon as it can be stopped
         self.connection, theirs = multiprocessing.Pipe()
         with open(log, "a") as output, theirs:
