@@ -32,18 +32,18 @@ namespace gpu {
 		// ---- the two back ends ----
 
 #ifdef __CUDACC__
-		std::string error; // of the latest call that failed
+		thread_local std::string error; // of its latest call that failed
 
 		bool succeeded(cudaError_t result)
 		{
-			if (result != cudaSuccess) error = cudaGetErrorString(result);
+			if (result != cudaSuccess) error = cudaGetErrorString(result), cudaGetLastError(); // which forgets it
 			return result == cudaSuccess;
 		}
-		struct Memory { // on the device
+		struct Memory { // on the device; of the stream's, since cudaMalloc() and cudaFree() wait for all launches
 			char* data = nullptr;
-			explicit Memory(std::size_t size) { succeeded(cudaMalloc(&data, size)); }
+			explicit Memory(std::size_t size) { succeeded(cudaMallocAsync(&data, size, cudaStreamLegacy)); }
 			Memory(const Memory&) = delete;
-			~Memory() { cudaFree(data); }
+			~Memory() { cudaFreeAsync(data, cudaStreamLegacy); }
 		};
 		bool upload(Memory& to, const void* from, std::size_t size)
 		{
@@ -57,21 +57,30 @@ namespace gpu {
 		{
 			runAny(*tasks[blockIdx.x].collision, tasks[blockIdx.x].steps);
 		}
+		// Launches of several threads are side by side, and beside what is copied meanwhile.
 		bool launch(const std::vector<Task>& tasks)
 		{
+			thread_local cudaStream_t stream = nullptr;
+			if (!stream && !succeeded(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking))) return false;
 			const std::size_t size = tasks.size() * sizeof(Task);
 			Memory list(size);
-			if (!upload(list, tasks.data(), size)) return false;
-			runAll<<<int(tasks.size()), mostThreads>>>(reinterpret_cast<const Task*>(list.data));
-			return succeeded(cudaGetLastError()) && succeeded(cudaDeviceSynchronize());
+			if (!list.data || !upload(list, tasks.data(), size)) return false;
+			runAll<<<int(tasks.size()), mostThreads, 0, stream>>>(reinterpret_cast<const Task*>(list.data));
+			return succeeded(cudaGetLastError()) && succeeded(cudaStreamSynchronize(stream));
 		}
 		std::string deviceName()
 		{
 			cudaDeviceProp properties;
 			return succeeded(cudaGetDeviceProperties(&properties, 0)) ? properties.name : "";
 		}
+		int computedAtOnce()
+		{
+			int multiprocessors = 0;
+			cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, 0);
+			return multiprocessors * blocksSideBySide;
+		}
 #else
-		std::string error;
+		thread_local std::string error;
 
 		struct Memory {
 			char* data;
@@ -93,6 +102,7 @@ namespace gpu {
 			return true;
 		}
 		std::string deviceName() { return "processor"; }
+		int computedAtOnce() { return omp_get_max_threads(); }
 #endif
 
 		// A collision in the device's memory: the structure, then its arrays.
@@ -159,6 +169,7 @@ const char* ensemble_device()
 	static std::string name;
 	return (name = deviceName()).c_str();
 }
+int ensemble_at_once() { return computedAtOnce(); }
 const char* ensemble_channels()
 {
 	static std::string names;

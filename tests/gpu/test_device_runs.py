@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -11,11 +12,12 @@ import pytest
 
 from analysis.runs.folder import open_run
 from analysis.runs.format import same
-from analysis.runs.status import verify_run
+from analysis.runs.status import run_of, status_of, verify_run
+from yade_scripts.experiments.collision import CollisionParameters
 from yade_scripts.run import on_device
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(__file__)), "scripts"))
-from running import PYTHON, STUDY, environment, study
+from running import PYTHON, STUDY, environment, start, study, wait_for
 
 ROWS = {
     "like": "packing=bcca grains=30 velocity=15 impact=0.3",
@@ -81,6 +83,39 @@ def test_what_a_device_cannot_run_goes_to_yade_and_one_failure_is_its_own(tmp_pa
     assert "2 rows on processor; 1 are done, or not for it" in done.stdout and "2 done, 1 failed" in done.stdout
     assert done.returncode == 1 and "fast: a grain moves more than half a radius in a step" in done.stderr
     assert "device" not in open_run(tmp_path / "runs" / "plate").record
+
+
+@pytest.mark.parametrize("signal_of_stop", [signal.SIGINT, signal.SIGTERM])
+def test_stopped_runs_give_their_folders_back_and_start_again(tmp_path, signal_of_stop):
+    write_table(tmp_path / "c.table", {"a": "seed=1", "b": "seed=2"}, packing="bcca", grains="200", velocity="5")
+    command = [PYTHON, STUDY, "c.table", "--device", "processor"]
+    running = start(tmp_path, *command)
+    wait_for(lambda: list((tmp_path / "runs").glob("?/states")))
+    running.send_signal(signal_of_stop)
+    printed, problems = running.communicate(timeout=120)
+    assert running.returncode == 128 + signal_of_stop and "0 done, 0 failed, 2 left" in printed and problems == ""
+    assert not list((tmp_path / "runs").glob("?/lock"))
+
+
+class Lost(on_device.Library):
+    """A device that is lost at its third launch."""
+
+    launches = 0
+
+    def run(self, collisions, steps):
+        self.launches += 1
+        if self.launches > 2:
+            raise on_device.DeviceError("the device is lost")
+        super().run(collisions, steps)
+
+
+def test_what_was_on_a_lost_device_fails_each_with_its_line(tmp_path):
+    given = [
+        CollisionParameters.parse({"packing": "bcca", "grains": 20, "seed": seed, "out": str(tmp_path / str(seed))})
+        for seed in range(3)
+    ]
+    assert on_device.run(given, Lost()) == dict.fromkeys(range(3), "the device is lost")
+    assert [status_of(run_of(one.out)) for one in given] == ["failed: the device is lost"] * 3
 
 
 def test_a_device_that_is_not_there_is_one_line(tmp_path, monkeypatch):

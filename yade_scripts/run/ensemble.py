@@ -59,6 +59,8 @@ class Library:
         Its name.
     channels : tuple of str
         Energy channels, in the order of the samples.
+    at_once : int
+        Collisions that it computes at the same time.
     """
 
     def __init__(self, path=PROCESSOR):
@@ -70,6 +72,7 @@ class Library:
         self._of.collision_size.restype = ctypes.c_longlong
         self.device = self._of.ensemble_device().decode()
         self.channels = tuple(self._of.ensemble_channels().decode().split())
+        self.at_once = self._of.ensemble_at_once()
 
     def runs(self, mechanisms):
         """Whether collisions with these mechanisms (a sum of MECHANISMS) are compiled."""

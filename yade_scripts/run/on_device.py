@@ -1,43 +1,38 @@
-"""Collisions of a table on a GPU, or by the same code on a processor: batches, and a run folder of each as YADE's runs
-leave it. No YADE is needed.
+"""Collisions of a table on a GPU, or by the same code on a processor: a run folder of each as YADE's runs leave it. No
+YADE is needed.
 
-Many collisions start together, each with its own step and length, and come back at the samples that become states, or
-at which it is looked whether they are at rest. A run on a device has no checkpoints: one that was stopped starts
-again."""
+Many collisions are on the device together, each with its own step and length. Those that have come to a sample that
+becomes a state, or at which it is looked whether they are at rest, are judged and written by other processes, which
+also prepare the next scenes, while the device goes on with the others. A run on a device has no checkpoints: one that
+was stopped starts again."""
 
+import multiprocessing
+import queue
+import subprocess
 import sys
+import threading
 import time
-from dataclasses import dataclass, field
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
-from analysis.measures.compression import of_sides
 from analysis.runs.files import RunFolderError
-from analysis.runs.format import BROKEN_BONDS, CHANNELS, RESTING
 from analysis.version import commit, version
 from yade_scripts.experiments import collision
-from yade_scripts.materials import pair_constants
 from yade_scripts.parameters import InputError, one_line
-from yade_scripts.run.ensemble import (
-    DEVICE,
-    MATERIAL,
-    MECHANISMS,
-    PROCESSOR,
-    SIDES,
-    Collision,
-    DeviceError,
-    Grains,
-    Library,
-)
-from yade_scripts.run.folder import RunFolder
-from yade_scripts.run.kind import Schedule, derived
-from yade_scripts.run.parameters import SPRINGS
-from yade_scripts.run.script import record_of
-from yade_scripts.time_step import require_countable
+from yade_scripts.run.device_run import Seen, mechanisms_of
+from yade_scripts.run.ensemble import DEVICE, PROCESSOR, Collision, DeviceError, Library
+from yade_scripts.run.parameters import CORES
 
 LIBRARIES = {"gpu": DEVICE, "processor": PROCESSOR}
-BATCH = 400  # collisions at once: each holds its folder, and a process may have 1,024 files open
-CHECKS = 20  # times in a run that it is looked whether pieces are apart
+TOP = Path(__file__).resolve().parents[2]
+ENOUGH = 3  # times as many collisions under way as the device computes at once: each holds a file of its process
+LAUNCHES = 2  # under way: when one has come to an end the next must be there
+PART = 1000  # steps of a launch, at most
+PATIENCE = 0.1  # s, between looks at signals, and for memory of the device
 
 
 def library_of(device):
@@ -61,14 +56,9 @@ def why_not(parameters, library):
         "a plate": parameters.target == collision.WALL,
         "planar = 1": bool(parameters.planar),
         "impactStepFraction": parameters.impactStepFraction is not None,
-        "these springs": not library.runs(_mechanisms(parameters)),
+        "these springs": not library.runs(mechanisms_of(parameters)),
     }
     return next((reason for reason, given in reasons.items() if given), None)
-
-
-def _mechanisms(parameters):
-    found = sum(MECHANISMS[name] for name in SPRINGS if getattr(parameters, name))
-    return found + (MECHANISMS["drag"] if parameters.viscoelasticTime else 0)
 
 
 def run(parameters, library, stop=None, progress=lambda ended: None):
@@ -76,182 +66,140 @@ def run(parameters, library, stop=None, progress=lambda ended: None):
 
     parameters: list of collision.CollisionParameters; stop: script.StopSignals, after a signal the runs that are under
     way are left as they are; progress(ended): called with the number of runs that have come to their end since."""
-    waiting, failed = list(enumerate(parameters))[::-1], {}
-    while waiting and not (stop and stop.received):
-        batch = []
+    under_way = max(1, min(ENOUGH * library.at_once, len(parameters)))
+    host, rows, ended, shown = _Host(library, min(CORES, under_way)), enumerate(parameters), {}, 0
+
+    def work():
+        for number, given in rows:
+            if host.stopped:
+                return
+            ended[number] = host.run(number, given)
+
+    with ThreadPoolExecutor(under_way) as threads:
+        working = left = [threads.submit(work) for _ in range(under_way)]
         try:
-            while waiting and len(batch) < BATCH:
-                number, given = waiting.pop()
-                try:
-                    batch.append(_Run(number, given, library))
-                except (InputError, RunFolderError, OSError, ValueError) as error:
-                    failed[number] = one_line(error)
-                    progress(1)
-                except DeviceError as error:  # no memory for one more: the batch is full
-                    if not batch:
-                        failed[number] = one_line(error)
-                        progress(1)
-                        continue
-                    waiting.append((number, given))
-                    break
-            failed |= _carry_out(batch, library, stop, progress)
+            while left and not (stop and stop.received):
+                _, left = wait(left, PATIENCE)
+                progress(len(ended) - shown)
+                shown = len(ended)
         finally:
-            for one in batch:
-                one.folder.close()
-    return failed
+            host.stopped = True
+            threads.shutdown()
+            host.close()
+        for one in working:
+            one.result()  # raises what it may have ended by
+    return {number: problem for number, problem in ended.items() if problem}
 
 
-def _carry_out(batch, library, stop, progress):
-    """Bring a batch to its end; {number: why it failed}."""
-    failed, active = {}, list(batch)
-    while active and not (stop and stop.received):
+class _Host:
+    """What runs share: the device with the threads that launch, and the processes beside it."""
+
+    def __init__(self, library, processes):
+        self.stopped = False
+        self._library, self._processes = library, [_Process() for _ in range(processes)]
+        self._placing, self._placed = threading.Lock(), set()  # numbers of the runs that are on the device
+        self._waiting = queue.SimpleQueue()  # (Collision, steps, Future) that are to be launched
+        self._launches = [threading.Thread(target=self._launch) for _ in range(LAUNCHES)]
+        for thread in self._launches:
+            thread.start()
+        versions = {"contact_law": version(), "python": sys.version.split()[0], "numpy": np.__version__}
+        self._made = {"versions": versions, "commit": commit(), "device": library.device}
+
+    def close(self):
+        for _ in self._launches:
+            self._waiting.put(None)
+        for thread in self._launches:
+            thread.join()
+        for process in self._processes:
+            process.close()
+
+    def run(self, number, given):
+        """Bring a run to its end; why it failed, or None."""
+        call = partial(self._processes[number % len(self._processes)].call, number)
         try:
-            library.run([one.collision for one in active], [one.steps_to_stop for one in active])
-        except DeviceError as error:  # the device is lost, and all that was on it
-            return failed | {one.number: one.end(f"failed: {one_line(error)}") for one in active}
-        for one in list(active):
+            start = call("begin", given, self._made)
+            one, steps = self._place(number, start), start.steps
+            while steps is not None and not self.stopped:
+                try:
+                    self._waiting.put((one, steps, done := Future()))
+                    done.result()
+                    what = "look", _seen(one)
+                except DeviceError as error:
+                    what = "fail", one_line(error)
+                steps = call(*what)
+        except (InputError, RunFolderError, OSError, ValueError, DeviceError) as error:
+            return one_line(error)
+        finally:
+            self._placed.discard(number)
+
+    def _place(self, number, start):
+        """Have a Collision on the device; where its memory is full, when others have come to their end."""
+        with self._placing:
+            while True:
+                try:
+                    one = Collision(self._library, start.grains, **start.options)
+                    self._placed.add(number)
+                    return one
+                except DeviceError:
+                    if not self._placed or self.stopped:
+                        raise
+                    time.sleep(PATIENCE)
+
+    def _launch(self):
+        """Bring on whatever waits for it, all together, until close()."""
+        while task := self._waiting.get():
+            tasks = [task]
+            with suppress(queue.Empty):
+                while True:
+                    tasks.append(self._waiting.get_nowait())
             try:
-                status = one.look()
-                if status is None:
-                    continue
-                problem = one.end(status)
-            except (OSError, RunFolderError) as error:
-                problem = f"failed: {one_line(error)}"
-            if problem:
-                failed[one.number] = problem.removeprefix("failed: ")
-            active.remove(one)
-            progress(1)
-    return failed
+                self._library.run([one for one, _, _ in tasks], [min(steps, PART) for _, steps, _ in tasks])
+            except DeviceError as error:  # the device is lost, and all that was on it
+                for _, _, done in tasks:
+                    done.set_exception(error)
+                continue
+            for one, steps, done in tasks:
+                if steps > PART and not self.stopped:
+                    self._waiting.put((one, steps - PART, done))
+                else:
+                    done.set_result(None)
 
 
-@dataclass
-class _Run:
-    """One collision under way."""
+def _seen(one):
+    """Seen of a Collision; DeviceError if it has failed."""
+    if one.read().failure:
+        raise DeviceError(one.failure)
+    return Seen(one.step, one.motion(), one.contacts(), one.samples())
 
-    number: int
-    given: object
-    library: Library
-    states: int = 0
-    resting: list = field(default_factory=list)  # (sample, time, 0 or 1)
 
-    def __post_init__(self):
-        self.begun = time.monotonic()
-        constants = pair_constants(self.given, neck=self.given.neck)
-        self.scene = scene = collision.prepare(self.given, 1, constants)
-        given = scene.parameters
-        require_countable(given.duration, scene.time_step)
-        self.schedule = schedule = Schedule.of(given.duration, scene.time_step, scene.interval, states=given.states)
-        self.folder = RunFolder(given.out, given.overwrite)
+class _Process:
+    """A process that prepares, judges and writes runs (device_run.serve), in a session of its own: Ctrl-C reaches this
+    one alone."""
+
+    def __init__(self):
+        self._connection, theirs = multiprocessing.Pipe()
+        self._calls = threading.Lock()
+        with theirs:
+            code = f"import sys; sys.path.insert(0, {str(TOP)!r}); from yade_scripts.run.device_run import serve; "
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", code + f"serve({theirs.fileno()})"],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+
+    def call(self, *task):
+        """The answer of serve(); raises what it sends as an exception."""
         try:
-            self._start(scene, schedule)
-        except BaseException:
-            self.folder.close()
-            raise
+            with self._calls:
+                self._connection.send(task)
+                answer = self._connection.recv()
+        except (EOFError, OSError):
+            raise DeviceError("the process that prepares and writes it has died") from None
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
 
-    def _start(self, scene, schedule):
-        given = scene.parameters
-        self.collision = Collision(
-            self.library,
-            _grains(scene),
-            schedule.steps,
-            scene.time_step,
-            schedule.interval,
-            mechanisms=_mechanisms(given),
-            limit=given.limit,
-            neck=given.neck,
-            sliding_stiffness_factor=given.slidingStiffnessFactor,
-        )
-        made = {"versions": {"contact_law": version(), "python": sys.version.split()[0], "numpy": np.__version__}}
-        made |= {"commit": commit(), "device": self.library.device}
-        self.record = record_of(collision.KIND.name, given.as_dict(), derived(scene, schedule), made)
-        between = schedule.interval * scene.time_step
-        checks = range(0, schedule.samples + 1, max(1, schedule.samples // CHECKS))[1:] if scene.rest else ()
-        self.checks = {number for number in checks if number * between > scene.rest.earliest}
-        self.stops = sorted(set(schedule.states) | self.checks | {schedule.samples})
-        self.sample = 0
-
-    @property
-    def steps_to_stop(self):
-        """Steps until the next sample at which it is looked at."""
-        return (self.stops[0] - self.sample) * self.schedule.interval
-
-    def look(self):
-        """What a sample at which the run has stopped is for; the status if it has come to its end, or None."""
-        self.sample = self.stops.pop(0)
-        self.collision.read()
-        if self.collision.failure:
-            return f"failed: {self.collision.failure}"
-        at_end, state = not self.stops, self._state()
-        if not np.isfinite(state["position"]).all():
-            return f"failed: positions are not finite at {state['time']:.4g} s"
-        if self.sample in self.checks:
-            self.resting.append((self.sample, state["time"], self.scene.rest.seems_so(state)))
-            since = state["time"] - self.scene.rest.needed(state["time"])
-            at_end |= all(rests for _, when, rests in self.resting if when >= since)
-        if at_end or self.sample in self.schedule.states:
-            self.folder.write_state(self.states, state)
-            self.states += 1
-        return "completed" if at_end else None
-
-    def _state(self):
-        """The state at the latest sample, as contact_law.snapshot() has it, with the arrays of the scene's grains."""
-        position, velocity, spin = self.collision.motion()
-        pairs, force, bonded = self.collision.contacts()
-        time = self.collision.step * self.scene.time_step
-        found = {"time": time, "position": position, "velocity": velocity}
-        found |= {"angular_velocity": spin, "radius": self.collision.radius, **self.scene.grains}
-        found |= {"contact_pairs": pairs, "contact_normal_force": force, "contact_bonded": bonded}
-        if self.scene.parameters.neck:
-            found["contact_neck"] = np.where(bonded, self.scene.parameters.neck, 0.0)
-            samples = self.collision.samples()
-            found["bonds_broken"] = np.array([samples[name][-1] for name in BROKEN_BONDS], dtype=int)
-        return found
-
-    def end(self, status):
-        """Write what is left; the status if it failed, or None."""
-        self.record["timeReached"] = None
-        if self.collision.failure is None and status == "completed":
-            history = self._history()
-            self.record["timeReached"] = float(history["time"][-1])
-            self.folder.write_history(history)
-        write = lambda: self.folder.write_run(
-            {**self.record, "wallTime": time.monotonic() - self.begun, "status": status}
-        )
-        write()
-        if status != "completed":
-            return status
-        self.record["outcome"] = collision.KIND.ending(self.folder.path).outcome
-        write()
-        self.folder.write_ended()
-        return None
-
-    def _history(self):
-        """history.npz of all samples."""
-        samples, given = self.collision.samples(), self.scene.parameters
-        sides = [samples[name] for name in SIDES]
-        d, v = of_sides(sides[:3], sides[3:], given.radius * given.grainRadius)
-        counts = ("contacts", "contacts_between", "formed", "broken", *(BROKEN_BONDS if given.neck else ()))
-        found = {name: samples[name] for name in ("time", *CHANNELS)}
-        found |= {"d": d, "v": v, **{name: samples[name].astype(int) for name in counts}}
-        if self.scene.rest:
-            found[RESTING] = np.full(len(d), np.nan)
-            for number, _, rests in self.resting:
-                found[RESTING][number] = rests
-        return found
-
-
-def _grains(scene):
-    """Grains of a Scene of two packings."""
-    pair, velocities = scene.placed
-    each = scene.parameters.of_each()
-    materials = [[getattr(own, name) for name in MATERIAL] for own in each]
-    motions = [packing.motion(v, spin) for packing, v, spin in zip(pair, velocities, scene.parameters.spins)]
-    return Grains(
-        np.concatenate([packing.position for packing in pair]),
-        np.concatenate([velocity for velocity, _ in motions]),
-        np.concatenate([packing.radius for packing in pair]),
-        np.array(materials),
-        scene.grains.get("material"),
-        scene.grains["aggregate"],
-        np.concatenate([spin for _, spin in motions]),
-    )
+    def close(self):
+        self._connection.close()
+        self._process.wait()

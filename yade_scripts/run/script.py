@@ -6,6 +6,7 @@ import signal
 import sys
 import time
 from contextlib import suppress
+from functools import cache
 
 import numpy as np
 
@@ -218,6 +219,7 @@ def made_with():
     return {"versions": {**versions, "contact_law": contact_law.__version__}, "commit": contact_law.commit}
 
 
+@cache
 def hardware():
     """{'cpu': model, 'cores': number} of this machine."""
     model = platform.machine()

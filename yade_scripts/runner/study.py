@@ -59,6 +59,8 @@ class Study:
         self._announce()
         if library:
             self._run_on(library, stop)
+            if stop and stop.received:
+                return self.states()
         due = 0.0
         with bar(len(self.rows), "runs") as shown, closing(self._running()) as running:
             for _ in running:
