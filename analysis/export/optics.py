@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..measures.fragments import fragment_labels
+from ..measures.network import images
 from ..printable import Refused
 from ..progress import progress
 from ..runs.files import make_folder, write_file
@@ -19,7 +20,8 @@ MOST_SITES = 500_000_000
 
 def chosen(run, state=None, fragment=None):
     """The RunFolder with one of its states (a number from 0, or "last"), and of each state one fragment's grains
-    (fields.GRAINS; 0 the largest). Refused where there is no such one."""
+    (fields.GRAINS; 0 the largest), whole and without the periodic cell unless it spans that. Refused where there is no
+    such one."""
     states = run.states
     if state is not None:
         number = len(states) - 1 if state == "last" else int(state)
@@ -44,7 +46,22 @@ def _fragment(state, number):
         if value is not None and axis not in ("P", "K"):  # no planes
             arrays[quantity.name] = value[of_axis[axis]] if axis in of_axis else value
     arrays["contact_pairs"] = new[arrays["contact_pairs"]]
-    return State(**arrays)
+    return _whole(State(**arrays))
+
+
+def _whole(state):
+    """The state of a piece without its periodic cell, no contact broken; as it is where the piece spans the cell."""
+    if state.cell_size is None:
+        return state
+    edges = np.diag(state.cell_size) if state.cell_vectors is None else state.cell_vectors
+    first, second = state.contact_pairs.T
+    between = state.position[first] - state.position[second]
+    crossed = np.round(between @ np.linalg.inv(edges).T).astype(int)
+    image = images(len(state.radius), state.contact_pairs, crossed)
+    if np.any(image[second] - image[first] != crossed):
+        return state
+    whole = {"position": state.position + image @ edges.T, "cell_size": None, "cell_vectors": None}
+    return State(**{**vars(state), **whole})
 
 
 def write_mstm(run, folder, unit="m"):

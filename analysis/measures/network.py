@@ -54,6 +54,21 @@ def loops(grains, pairs):
     return len(pairs) - grains + int((parent < 0).sum()), int(inside.sum())
 
 
+def images(grains, pairs, crossed):
+    """In which image of a periodic cell (N, 3) int each of N = `grains` grains is, followed along a spanning_forest.
+
+    crossed (M, 3) int: of each pair, how many edges the second grain has to be moved to be beside the first. A piece is
+    whole there unless it winds around the cell: then image[second] - image[first] is not `crossed` for all its pairs.
+    """
+    steps = {(a, b): step for (a, b), step in zip(np.asarray(pairs).tolist(), crossed)}
+    steps |= {(b, a): -step for (a, b), step in steps.items()}
+    order, parent = spanning_forest(contact_network(grains, pairs))
+    image = np.zeros((grains, 3), dtype=int)
+    for grain in order[parent[order] >= 0]:
+        image[grain] = image[parent[grain]] + steps[int(parent[grain]), int(grain)]
+    return image
+
+
 def spanned_axes(position, pairs, cell_size):
     """Number of independent directions, 0 to 3, along which a piece of a periodic cell is connected with its own
     images.
@@ -66,15 +81,9 @@ def spanned_axes(position, pairs, cell_size):
         return 0
     first, second = pairs.T
     crossed = np.round((position[first] - position[second]) / cell_size).astype(int)
-    network = contact_network(len(position), pairs)
-    steps = {(a, b): step for a, b, step in zip(first.tolist(), second.tolist(), crossed)}
-    steps |= {(b, a): -step for (a, b), step in steps.items()}
-    order, parent = spanning_forest(network)
-    image = np.zeros((len(parent), 3), dtype=int)  # in which image of the cell each grain is
-    for grain in order[parent[order] >= 0]:
-        image[grain] = image[parent[grain]] + steps[int(parent[grain]), int(grain)]
+    image = images(len(position), pairs, crossed)
     windings = crossed - (image[second] - image[first])
-    piece = connected_components(network, directed=False)[1][first]
+    piece = connected_components(contact_network(len(position), pairs), directed=False)[1][first]
     wound = windings.any(axis=1)
     ranks = [np.linalg.matrix_rank(windings[wound & (piece == name)]) for name in np.unique(piece[wound])]
     return int(max(ranks, default=0))
