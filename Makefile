@@ -17,7 +17,7 @@
 # make bench           speed, and error against the time step, printed (BENCH=--quick: less); make build/harness: engine without YADE
 # make bench-papers    speed on the scenes of the papers (SCENE=a22,k13: of these)
 # make bench-peers     every code on one collision; make peers installs LAMMPS and LIGGGHTS
-# make conformance     this law, YADE's own, LAMMPS and LIGGGHTS against cases of two grains, as a table
+# make conformance     this law, YADE's own, LAMMPS and LIGGGHTS against the suite's cases, as a table
 #
 # Tests
 # make check           formatting, kernel, physics and the fast half of the tests (a minute of two cores): while working

@@ -18,7 +18,9 @@ from statistics import mean, stdev
 
 HERE = Path(__file__).resolve().parent
 ROUNDING = 1e-9  # below it an error has no order
+FIRST_ORDER = 0.8  # least order between any two steps of errors that fall in proportion to the step
 SHUFFLES = 9999
+CONVERGES = "converges, first order"
 
 
 # ---- cases ----
@@ -57,12 +59,15 @@ def compare_question(question, steps, values, suite):
     errors = [math.nan if value is None else (value - exact) / scale for value in values]
     if not all(map(math.isfinite, errors)):
         return dict(word="does not occur", difference=math.inf, order=None)
-    falls = (steps[-2] / steps[-1]) ** question.get("order", suite["order"])
-    limit = abs(errors[-1] + (errors[-1] - errors[-2]) / (falls - 1))
+    ratio = (steps[-2] / steps[-1]) ** question.get("order", suite["order"])
+    limit = abs(errors[-1] + (errors[-1] - errors[-2]) / (ratio - 1))
     order = None
     if min(abs(errors[0]), abs(errors[-1])) > ROUNDING:
         order = math.log(abs(errors[0] / errors[-1])) / math.log(steps[0] / steps[-1])
-    return dict(word="agrees" if limit <= suite["tolerance"] else "differs", difference=limit, order=order)
+    ratios = [(longer / shorter) ** FIRST_ORDER for longer, shorter in zip(steps, steps[1:])]
+    falls = all(abs(more) >= ratio * abs(less) for more, less, ratio in zip(errors, errors[1:], ratios))
+    word = "agrees" if limit <= suite["tolerance"] else CONVERGES if falls else "differs"
+    return dict(word=word, difference=limit, order=order)
 
 
 def compare_case(case, answer, suite):
@@ -83,8 +88,9 @@ def compare_case(case, answer, suite):
     if not answered:
         return dict(word="incomplete", why="nothing is answered", questions={})
     worst = max(answered, key=answered.get)
-    differs = any(one["word"] in ("differs", "does not occur") for one in found.values())
-    word = "differs" if differs else "incomplete" if missing else "agrees"
+    words = {one["word"] for one in found.values()}
+    differs = words & {"differs", "does not occur"}
+    word = "differs" if differs else "incomplete" if missing else CONVERGES if CONVERGES in words else "agrees"
     share = "" if len(answered) == len(found) else f"{len(answered)} of {len(found)} answered; "
     why = f"{share}{size(answered[worst], 1)}; worst: {worst}"
     return dict(word=word, why=why, questions=found, difference=answered[worst])
@@ -107,7 +113,7 @@ def print_cases(cases, long):
         for question, one in case["questions"].items() if long else ():
             difference = "" if one["difference"] is None else f" {one['difference']:.1e}"
             order = "" if one["order"] is None else f", order {one['order']:.2f}"
-            print(f"    {one['word']:16}{question}{difference}{order}")
+            print(f"    {one['word']:24}{question}{difference}{order}")
 
 
 def print_table(of_codes):

@@ -11,7 +11,9 @@ sys.path[:0] = [str(ROOM), str(ROOM / "adapters"), str(ROOM / "generator")]
 import check
 from answers import SUITE, answer
 
-SAMPLE = "equilibrium hysteresis sliding rolling twisting two-at-once under-load turning-slip bond-tension bond-shear"
+SAMPLE = (
+    "equilibrium hysteresis sliding rolling twisting two-at-once under-load turning-slip bond-tension bond-shear chain"
+)
 CASES = {case["id"]: case for case in SUITE["cases"]}
 LEVELS = 2  # of three
 
@@ -19,11 +21,11 @@ LEVELS = 2  # of three
 def test_the_references_are_what_the_generator_gives(monkeypatch):
     import generate
 
-    slow = (generate.tangential.free_rotation, generate.normal.viscous_drag)
+    slow = (generate.tangential.free_rotation, generate.tangential.chain, generate.normal.viscous_drag)
     monkeypatch.setattr(generate, "CASES", [made for made in generate.CASES if made not in slow])
-    quick = [case for case in SUITE["cases"] if case["id"] not in ("free-rotation", "viscous-drag")]
+    quick = [case for case in SUITE["cases"] if case["id"] not in ("free-rotation", "chain", "viscous-drag")]
     assert json.loads(json.dumps(generate.suite())) == {**SUITE, "cases": quick}
-    assert len(SUITE["cases"]) == 22
+    assert len(SUITE["cases"]) == 23
 
 
 @pytest.mark.in_yade
@@ -54,6 +56,16 @@ def test_a_case_agrees_only_where_all_is_answered_but_the_ledger():
     assert word(given) == "incomplete"
     values["greatest overlap"][-1] *= 1 + 2e-6
     assert word(given) == "differs"
+
+
+def test_errors_that_fall_as_the_step_are_no_difference():
+    word = lambda given: check.compare_cases(given)["sliding"]["word"]
+    given = results()
+    values = next(iter(given["cases"]["sliding"]["values"].values()))
+    exact = values[0]
+    for errors, verdict in (((2e-3, 1.05e-3), check.CONVERGES), ((2e-3, 1.5e-3), "differs")):
+        values[:] = [exact * (1 + error) for error in errors]
+        assert word(given) == verdict
 
 
 def test_results_that_cannot_be_compared_are_refused_in_a_line(tmp_path):

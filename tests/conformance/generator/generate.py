@@ -11,7 +11,7 @@ import tangential_cases as tangential
 from law import MATERIALS
 
 FILE = Path(__file__).resolve().parents[1] / "cases.json"
-HEAD = dict(suite="JKR-Wada conformance: two grains", version="1.1.0", licence="CC0-1.0", units="SI")
+HEAD = dict(suite="JKR-Wada conformance", version="1.2.0", licence="CC0-1.0", units="SI")
 HEAD.update(tolerance=1e-6, order=2)
 CASES = [
     *(normal.equilibrium, normal.hysteresis, normal.collision, normal.sticking, normal.oscillation),
@@ -19,7 +19,7 @@ CASES = [
     *(tangential.sliding, tangential.rolling, tangential.twisting, tangential.two_at_once, tangential.under_load),
     *(tangential.turning_slip, tangential.unlike_radii, tangential.unlike_materials),
     *(bond.bond_tension, bond.bond_shear, bond.bond_bending, bond.bond_torsion, bond.bond_break),
-    *(normal.plane, tangential.free_rotation),
+    *(normal.plane, tangential.free_rotation, tangential.chain),
 ]
 
 

@@ -20,6 +20,8 @@ mp.dps = 40
 ICE = dict(young=7e9, poisson=0.25, density=1000.0, surface_energy=0.1, critical_rolling=0.8e-9)
 SOFT = dict(young=3e9, poisson=0.33, density=1300.0, surface_energy=0.05, critical_rolling=1.1e-9)
 MATERIALS = {"ice": {**ICE, "viscoelastic_time": 0.0}, "soft": {**SOFT, "viscoelastic_time": 0.0}}
+MATERIALS["silicate"] = dict(young=54e9, poisson=0.17, density=2650.0, surface_energy=0.02)
+MATERIALS["silicate"].update(critical_rolling=2e-9, viscoelastic_time=0.0)
 MATERIALS["viscous ice"] = {**ICE, "viscoelastic_time": 2e-12}
 
 

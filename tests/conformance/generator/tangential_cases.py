@@ -37,10 +37,13 @@ def cycle(name, c, law, before, limit, work, spins, delta=None, scene="scene", m
     ]
     formula, source = law
     held = f"{formula}; held at the limit", f"{source}; W07"
-    early, questions = rounded(exact(QUARTER) / 20, 6), []
-    for words, values, time, its_law in (("before", before, early, law), ("at", limit, QUARTER, held)):
+    other, back = {of: -value for of, value in limit.items()}, rounded(3 * exact(QUARTER), 6)
+    moments = [("before the limit", before, rounded(exact(QUARTER) / 20, 6), law)]
+    moments += [("at the limit", limit, QUARTER, held), ("at the limit the other way", other, back, held)]
+    questions = []
+    for words, values, time, its_law in moments:
         for of, value in values.items():
-            questions.append(asked(f"{of} of {name} {words} the limit", at(time, of, scene), value, unit(of), *its_law))
+            questions.append(asked(f"{of} of {name} {words}", at(time, of, scene), value, unit(of), *its_law))
     spent = dict(scene=scene, kind="work", after=QUARTER, before=5 * QUARTER)
     questions.append(asked(f"work of a closed cycle of {name}", spent, work, "J", WORK, f"{source}; W07"))
     return made, questions
@@ -264,3 +267,76 @@ def free_rotation():
     questions.append(asked("change of the energy", channel("total", end), mpf(0), "J", *law))
     title = "A free pair that turns in space while all its springs swing: trajectory, energy and angular momentum"
     return case("free-rotation", title, "normal, sliding, rolling, twisting", {"scene": made}, questions)
+
+
+# ---- free grains that slip ----
+
+WAYS = ((1, 0, 0), (0.8, 0.6, 0), (0.6, 0, 0.8), (0.8, -0.6, 0), (0.6, 0, -0.8))  # from each grain to the next
+
+
+def returned(n1, n2, displacement, limit, way1, way2):
+    """Pointers (5, 3) of which displacements (5, 3) beyond their limit return to it, as README.md has it."""
+    size = np.linalg.norm(displacement, axis=1, keepdims=True)
+    e, excess = displacement / np.maximum(size, 1e-300), np.maximum(size - limit, 0)
+    for n, way in ((n1, way1), (n2, way2)):
+        moved = n - excess / way / (1 - (n * e).sum(axis=1, keepdims=True) ** 2) * e
+        yield moved / np.linalg.norm(moved, axis=1, keepdims=True)
+
+
+def after_the_hit(c, x, v, duration, steps):
+    """Positions (6, 3) of a chain of like grains at x, without contact forces, with velocities v: by leapfrog, in
+    doubles, with springs that are returned to their limits after each step."""
+    c = SimpleNamespace(**{name: float(number) for name, number in vars(c).items()})
+    r, h, w, inertia = c.r1, duration / steps, 0 * v, 0.4 * c.m1 * c.r1**2
+    force, torque, turn = 0 * v, 0 * v, lambda n, angle: n + np.cross(angle, n + np.cross(angle, n) / 2)
+    n = (x[:-1] - x[1:]) / np.linalg.norm(x[:-1] - x[1:], axis=1, keepdims=True)
+    n1, n2, phi = -n, n, np.zeros((5, 1))
+    for _ in range(steps):
+        v, w = v + h / 2 * force / c.m1, w + h / 2 * torque / inertia
+        x, n1, n2, before = x + h * v, turn(n1, h * w[:-1]), turn(n2, h * w[1:]), n
+        distance = np.linalg.norm(x[:-1] - x[1:], axis=1, keepdims=True)
+        n = (x[:-1] - x[1:]) / distance
+        phi = phi + h * ((w[:-1] - w[1:]) * (before + n) / 2).sum(axis=1, keepdims=True)
+        phi = np.clip(phi, -c.twist, c.twist)
+        zeta, xi, _ = of_pointers(c, n, n1, n2)
+        rolls = np.linalg.norm(xi, axis=1, keepdims=True) > c.roll
+        n1, n2 = returned(n1, n2, zeta, c.slide, 2 * r, -2 * r)
+        n1, n2 = returned(n1, n2, np.where(rolls, of_pointers(c, n, n1, n2)[1], 0), c.roll, r, r)
+        zeta, xi, z = of_pointers(c, n, n1, n2)
+        delta, u = 2 * r - distance, 1.0
+        assert np.all(delta > -c.dc) and np.all(np.linalg.norm(x[:-2] - x[2:], axis=1) > 2 * r)
+        for _ in range(9):
+            u = u - (3 * u**4 - 2 * u - delta / c.d0) / (12 * u**3 - 2)
+        pull = 4 * c.Fc * (u**6 - u**3) * n + c.ks * z / distance * zeta
+        rolling, twisting = c.R * c.kr * xi, c.kt * phi * n
+        force, torque = np.zeros_like(x), np.zeros_like(x)
+        force[:-1] += pull
+        force[1:] -= pull
+        torque[:-1] += np.cross(n1, -r * c.ks * zeta - rolling) - twisting
+        torque[1:] += np.cross(n2, r * c.ks * zeta - rolling) + twisting
+        v, w = v + h / 2 * force / c.m1, w + h / 2 * torque / inertia
+    return x
+
+
+def of_pointers(c, n, n1, n2):
+    """displacements() of contacts, rows (5, 3)."""
+    zeta0 = c.r1 * (n1 - n2)
+    z = (zeta0 * n).sum(axis=1, keepdims=True)
+    return zeta0 - z * n, c.R * (n1 + n2), z
+
+
+def chain():
+    c, speed = contact("silicate", 6e-7, "silicate", 6e-7), (0, 0.6, 0.8)
+    x = np.array([[rounded(mpf(s) * (2 * c.r1 - c.d0)) for s in row] for row in np.cumsum([(0, 0, 0), *WAYS], axis=0)])
+    v, duration = np.zeros((6, 3)), rounded(30 * c.t0, 6)
+    v[0] = speed
+    grains = [dict(grain("silicate", 6e-7), position=at, velocity=by) for at, by in zip(x.tolist(), v.tolist())]
+    made = dict(grains=grains, contact=constants(c), duration=duration, steps=[1200, 2400, 4800])
+    law = "springs that slip while grains move freely; leapfrog, 15,000 steps, to 1e-8 r", "A22, A24; W07"
+    questions = [
+        asked(f"position{k}.{axis} after 30 t0", at(duration, f"position{k}.{axis}"), value, "m", *law, c.r1)
+        for k, row in enumerate(after_the_hit(c, x, v, duration, 15_000), 1)
+        for axis, value in zip(AXES, row)
+    ]
+    title = "A bent chain of six grains hit across at 1 m/s: sliding and rolling at their limits while all move freely"
+    return case("chain", title, "normal, sliding, rolling, twisting", {"scene": made}, questions)
