@@ -34,11 +34,11 @@ def turned(v, angle):
 # ---- constants and normal motion, from analysis.theory; m1, m2: theory.Material ----
 
 
-def pair(m1, r1, m2, r2, damping, beta, sliding_factor=1):
+def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
     s = theory.shrunk_radius(beta)
     m1, m2 = (replace(m, density=m.density / s**3) for m in (m1, m2))
-    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor)
+    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor, rolling_factor)
     of_springs = dict(r1=s * r1, r2=s * r2, R=c.reduced_radius)
     of_springs |= dict(ks=c.sliding_stiffness, kr=c.rolling_stiffness, kt=c.twisting_stiffness)
     limits = dict(zeta_crit=c.critical_sliding, xi_crit=c.critical_rolling, phi_crit=c.critical_twisting)
@@ -184,16 +184,14 @@ STIFFNESS = {"sliding": "ks", "rolling": "kr", "twisting": "kt"}
 class Scene:
     """N grains in open space under a leapfrog. materials: the fields of theory.Material each; radii: (N,); x,
     v, w: (N, 3). half_step: v and w are of half a step before x (YADE's functors), not of the same moment (the fused
-    engine). `energies`: by channel, at the present positions."""
+    engine). options: of pair(). `energies`: by channel, at the present positions."""
 
-    def __init__(
-        self, materials, radii, x, v, w, dt, damping=0.0, neck=0.0, half_step=False, limit="held", sliding_factor=1.0
-    ):
+    def __init__(self, materials, radii, x, v, w, dt, neck=0.0, half_step=False, limit="held", **options):
         self.materials, self.radii = [theory.Material(*m) for m in materials], np.array(radii)
         self.x, self.v, self.w, self.dt = np.array(x), np.array(v), np.array(w), dt
         self.mass = 4 / 3 * pi * np.array([m.density for m in self.materials])[:, None] * self.radii[:, None] ** 3
         self.inertia = 0.4 * self.mass * self.radii[:, None] ** 2
-        self.damping, self.neck, self.limit, self.sliding_factor = damping, neck, limit, sliding_factor
+        self.neck, self.limit, self.options = neck, limit, options
         self.contacts, self.constants, self.lost = {}, {}, dict.fromkeys(LOST, 0.0)
         self.forces(dt if half_step else 0.0, start=True)
         if not half_step:
@@ -219,7 +217,7 @@ class Scene:
     def pair_step(self, i, j, x, old, dt, start):
         if (i, j) not in self.constants:
             grains = self.materials[i], self.radii[i], self.materials[j], self.radii[j], self.neck
-            contact = pair(*grains[:4], self.damping, self.neck, self.sliding_factor)
+            contact = pair(*grains, **self.options)
             self.constants[i, j] = contact, bond(*grains) if self.neck else None
         c, b = self.constants[i, j]
         p = SimpleNamespace(i=i, j=j, x=x, v=self.v[i] - self.v[j], w1=self.w[i], w2=self.w[j], drag=0.0, bonded=False)

@@ -27,16 +27,29 @@ def soft(**other):
     )
 
 
-def constants(material1, radius1, material2=None, radius2=None, damping=0, sliding_factor=1):
-    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, slidingStiffnessFactor=sliding_factor)
+SHORT = {
+    "damping": "linearDamping",
+    "sliding_factor": "slidingStiffnessFactor",
+    "rolling_factor": "rollingStiffnessFactor",
+}
+
+
+def attributes(options):
+    """Options by the names that functor and engine have."""
+    return {SHORT.get(name, name): value for name, value in options.items()}
+
+
+def constants(material1, radius1, material2=None, radius2=None, **options):
+    functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(**attributes(options))
     return functor.pairConstants(material1, radius1, material2 or material1, radius2 or radius1)
 
 
-def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, **law):
+def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, rolling_factor=1, **law):
     """With all of YADE's shapes that meet spheres; the law refuses facets and boxes."""
     bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
     shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
-    pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(linearDamping=damping, neck=neck, slidingStiffnessFactor=sliding_factor)
+    of_pairs = dict(damping=damping, neck=neck, sliding_factor=sliding_factor, rolling_factor=rolling_factor)
+    pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(**attributes(of_pairs))
     loop = InteractionLoop(shapes, [pairs], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)])
     return [ForceResetter(), InsertionSortCollider(bounds, verletDist=verlet), loop, NewtonIntegrator(damping=0)]
 
@@ -49,8 +62,7 @@ def new_scene(dt, mover="functors", **options):
     if mover == "functors":
         O.engines = functor_engines(**options)
     else:
-        names = {"damping": "linearDamping", "sliding_factor": "slidingStiffnessFactor"}
-        fused_engine(**{names.get(name, name): value for name, value in options.items()})
+        fused_engine(**attributes(options))
 
 
 def grain(position, radius, material, velocity=(0, 0, 0), spin=(0, 0, 0), blocked=""):

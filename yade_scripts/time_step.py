@@ -7,7 +7,7 @@ where grains are sintered."""
 import math
 from functools import partial
 
-from yade_scripts.materials import pair_constants
+from yade_scripts.materials import FACTORS, pair_constants
 from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
@@ -59,14 +59,14 @@ def require_stable(step, limit, depends_on):
 
 def step_limit(constants, filling):
     """Largest stable stepFraction [t0] of a CPE packing of that filling, or one as stiff against turning
-    (equivalent_filling): SAFETY times the step at which the first of two vibrations grows, of contacts or of bonds:
-    all grains turning in phase, or one moving against its neighbours."""
+    (equivalent_filling): SAFETY times the step at which the first of these vibrations grows, of contacts or of
+    bonds: all grains turning in phase, each against its neighbours, or one moving against its neighbours."""
     mass, contact_radius = 2 * constants["reducedMass"], constants["equilibriumContactRadius"]
     normal_stiffness = 1.2 * constants["pullOffForce"] / constants["equilibriumOverlap"]  # Arakawa et al. (2024), eq 38
     sliding_stiffness = constants["slidingStiffness"]
     lattice = maximum_filling(2 * constants["reducedRadius"], constants["equilibriumOverlap"])
     occupied = min(1.0, filling / lattice)
-    turning = 2 / math.sqrt(40 * occupied * sliding_stiffness / mass)
+    turning = 2 / math.sqrt(occupied * max(40 * sliding_stiffness, 10 * constants["rollingStiffness"]) / mass)
     drag = 4 * 8 * (constants["dragPerContactRadius"] * contact_radius + constants["linearDrag"]) / mass
     stiffness = 8 * (normal_stiffness + sliding_stiffness) / mass
     moving = 8 / (drag + math.sqrt(drag**2 + 16 * stiffness))
@@ -143,6 +143,7 @@ def _require_measured(parameters, *unmeasured):
     several = (
         (len(parameters.material_names) > 1, "two materials"),
         (not parameters.has_all_springs, "springs left out"),
+        *((getattr(parameters, name) != 1, f"{name} = {getattr(parameters, name):g}") for name in FACTORS),
     )
     for wrong, what in (*several, *unmeasured):
         if wrong:
@@ -151,11 +152,10 @@ def _require_measured(parameters, *unmeasured):
 
 def collision_error(parameters, constants):
     """Error of a collision's ledger [K(0)] over the square of the step [t0], 95 % level. Raises ParameterError."""
-    sliding, velocity = parameters.slidingStiffnessFactor, parameters.velocity
+    velocity = parameters.velocity
     _require_measured(
         parameters,
         (parameters.packing == "file", "packing = file"),
-        (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
         (parameters.sizes != EQUAL, f"sizes = {parameters.sizes}"),
         (parameters.initialOverlap != 1, f"initialOverlap = {parameters.initialOverlap:g}"),
     )
@@ -198,11 +198,10 @@ def compression_error(parameters, constants):
     """Error of a compression's ledger [work of the boundaries], likewise."""
     # E_roll = 6 pi^2 gamma R xi_crit (K13 eq 1) over F_c delta_c; F_c = 3 pi gamma R/2
     rolling = 4 * math.pi * constants["criticalRolling"] / constants["pullOffOverlap"]
-    final, sliding = parameters.finalFilling, parameters.slidingStiffnessFactor
+    final = parameters.finalFilling
     range_of_rolling = f"only {ROLLINGS[0]:g} to {ROLLINGS[1]:g} (not ice, or another criticalRolling)"
     _require_measured(
         parameters,
-        (sliding != 1, f"slidingStiffnessFactor = {sliding:g}"),
         (parameters.finalPressure is not None, "finalPressure, which may end a run at any filling"),
         (not FILLINGS[0] <= final <= FILLINGS[1], f"finalFilling = {final:.3g}, only {FILLINGS[0]} to {FILLINGS[1]}"),
         (parameters.grains < LEAST_GRAINS, f"fewer than {LEAST_GRAINS} grains"),

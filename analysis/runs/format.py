@@ -202,7 +202,8 @@ _BY_UNIT = {
     "grain radii": "radius",
     "of that at rest": "initialOverlap",
     "1": "impact neck filling initialFilling finalFilling stretchFilling sizeRatio sizeFraction sizeSpread "
-    "sizeExponent materialFraction poisson tolerance slidingStiffnessFactor linearDamping",
+    "sizeExponent materialFraction poisson tolerance slidingStiffnessFactor "
+    "rollingStiffnessFactor linearDamping",
 }
 PARAMETER_UNITS = {name: unit for unit, names in _BY_UNIT.items() for name in names.split()}
 

@@ -69,7 +69,9 @@ def time_unit(density, radius, reduced_young, surface_energy):
     return 0.95 * density**0.5 * radius ** (7.0 / 6.0) / (reduced_young ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
 
 
-def pair_constants(material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0):
+def pair_constants(
+    material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0, rolling_factor=1.0
+):
     """Constants of the contact of two grains, or of a grain and a plane.
 
     Parameters
@@ -82,6 +84,8 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
         K13's k_n.
     sliding_factor : float
         k_s over 8 a0 G*; 2 as in S17's eqs 11 and 12.
+    rolling_factor : float
+        k_r over 4 F_c/R.
 
     Returns
     -------
@@ -112,7 +116,7 @@ def pair_constants(material1, radius1, material2=None, radius2=None, linear_damp
         equilibrium_overlap=delta0,
         pull_off_overlap=(9.0 / 16.0) ** (1.0 / 3.0) * delta0,
         pull_off_force=pull_off_force,
-        rolling_stiffness=4.0 * pull_off_force / R,
+        rolling_stiffness=rolling_factor * 4.0 * pull_off_force / R,
         sliding_stiffness=sliding_factor * 8.0 * a0 * sliding_shear,
         twisting_stiffness=16.0 / 3.0 * twisting_shear * a0**3,
         critical_sliding=twisting_shear / sliding_shear * a0 / (16.0 * pi),

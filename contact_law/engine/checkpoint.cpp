@@ -12,7 +12,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 9;
+	constexpr int formatNumber = 10;
 
 	// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
 	double sumOfBits(const std::vector<double>& numbers, std::size_t count)
@@ -206,6 +206,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(shared.material.size(), "the number of materials");
 	archive.same(shared.pairs.linearDamping, "linearDamping");
 	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
+	archive.same(shared.pairs.rollingStiffnessFactor, "rollingStiffnessFactor");
 	archive.same(shared.neck, "neck");
 	transferSize(archive, shared.necks);
 	for (double& neck : shared.necks)

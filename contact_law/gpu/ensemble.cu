@@ -158,7 +158,7 @@ extern "C" {
 struct CollisionInput {
 	int grains, contacts, kinds, bonded, mechanisms, limit, interval, slots, pairs, contactsOfAGrain;
 	long long steps;
-	double dt, neck, linearDamping, slidingStiffnessFactor, skin;
+	double dt, neck, linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, skin;
 	const double *position, *velocity, *spin, *mass, *inertia, *radius, *materials;
 	const int *kind, *aggregate, *touching;
 };
@@ -187,7 +187,8 @@ void* collision_start(const CollisionInput* given)
 	c.room = { g.grains, g.slots, g.pairs, g.contactsOfAGrain, g.kinds, int(g.steps / g.interval) + 2 };
 	c.grains = g.grains, c.mechanisms = g.mechanisms, c.limit = LimitRule(g.limit), c.interval = g.interval;
 	c.bonds = g.bonded ? g.contacts : 0, c.slots = g.contacts, c.stepsLeft = g.steps;
-	c.dt = g.dt, c.neck = g.neck, c.options = { g.linearDamping, g.slidingStiffnessFactor }, c.skin = g.skin;
+	c.dt = g.dt, c.neck = g.neck, c.skin = g.skin;
+	c.options = { g.linearDamping, g.slidingStiffnessFactor, g.rollingStiffnessFactor };
 	c.uniform = true;
 	for (int k = 1; k < g.grains; ++k)
 		c.uniform = c.uniform && g.radius[k] == g.radius[0] && g.kind[k] == g.kind[0];

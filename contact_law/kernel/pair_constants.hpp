@@ -23,6 +23,7 @@ struct Material {
 struct PairOptions {
 	double linearDamping = 0;          // k_n, K13 (4)
 	double slidingStiffnessFactor = 1; // k_s over A22's (18); 2: of S17's (11) and (12)
+	double rollingStiffnessFactor = 1; // k_r over A22's (14)
 };
 
 /* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
@@ -102,7 +103,7 @@ inline PairConstants<double> derivePair(
 	c.equilibriumOverlap = a0 * a0 / (3 * R);
 	c.pullOffOverlap = std::cbrt(9. / 16.) * c.equilibriumOverlap;                 // A22 (3)
 	c.pullOffForce = 3 * pi * gamma * R;                                           // A22 (6)
-	c.rollingStiffness = 4 * c.pullOffForce / R;                                   // A22 (14)
+	c.rollingStiffness = options.rollingStiffnessFactor * 4 * c.pullOffForce / R;  // A22 (14)
 	c.slidingStiffness = options.slidingStiffnessFactor * 8 * a0 * c.reducedShear; // A22 (18)
 	c.twistingStiffness = 16. / 3. * twistingShear * a0 * a0 * a0;                 // A22 (23)
 	c.criticalSliding = twistingShear / c.reducedShear * a0 / (16 * pi);           // A22 (19)

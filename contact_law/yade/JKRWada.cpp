@@ -62,6 +62,7 @@ void requireInRange(const contact_law::PairOptions& options, Real neck)
 {
 	requireNotNegative("linearDamping", options.linearDamping, "");
 	requirePositive("slidingStiffnessFactor", options.slidingStiffnessFactor, "");
+	requirePositive("rollingStiffnessFactor", options.rollingStiffnessFactor, "");
 	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
 }
 

@@ -167,7 +167,7 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
-	contact_law::PairOptions options() const { return { linearDamping, slidingStiffnessFactor }; }
+	contact_law::PairOptions options() const { return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor }; }
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 	void requireSameMaterials(const JKRWadaPhys&, const JKRMat& material1, const JKRMat& material2, const Interaction&) const;
 
@@ -193,6 +193,7 @@ public:
 			"2013, eq. 4); 0: none."))
 		((Real, slidingStiffnessFactor, 1, Attr::triggerPostLoad, "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); "
 			"2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
+		((Real, rollingStiffnessFactor, 1, Attr::triggerPostLoad, "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 "
 			"r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at "

@@ -185,7 +185,7 @@ void JKRWadaEngine::sinter(Real neckNow)
 	neck = std::max(neck, neckNow);
 	SharedConstants constants;
 	SharedBonds bonds;
-	sinterContacts(*scene, { linearDamping, slidingStiffnessFactor }, neckNow, neck, constants, bonds);
+	sinterContacts(*scene, pairOptions(), neckNow, neck, constants, bonds);
 	readAnew();
 	current->dynamics.bookDisconnection(
 	        before - current->dynamics.totalEnergy()); // of the leapfrog's kinetic energy: contacts push no more

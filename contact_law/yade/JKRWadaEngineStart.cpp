@@ -38,9 +38,9 @@ void JKRWadaEngine::requireAlone(const Scene& scene)
 JKRWadaEngine::Settings JKRWadaEngine::settings() const
 {
 	return { { "domains", text(domains) }, { "instructions", text(instructions) }, { "linearDamping", text(linearDamping) },
-		{ "slidingStiffnessFactor", text(slidingStiffnessFactor) }, { "neck", text(neck) }, { "sliding", text(sliding) },
-		{ "rolling", text(rolling) }, { "twisting", text(twisting) }, { "limit", text(limit) },
-		{ "orientations", text(orientations) } };
+		{ "slidingStiffnessFactor", text(slidingStiffnessFactor) }, { "rollingStiffnessFactor", text(rollingStiffnessFactor) },
+		{ "neck", text(neck) }, { "sliding", text(sliding) }, { "rolling", text(rolling) }, { "twisting", text(twisting) },
+		{ "limit", text(limit) }, { "orientations", text(orientations) } };
 }
 
 void JKRWadaEngine::requireSameSettings() const
@@ -60,7 +60,7 @@ void JKRWadaEngine::requireInRange() const
 	if (threads < 0) refuseInEngine("threads = " + text(threads) + ": must be >= 1, or 0 (those of YADE)");
 	if (domains < 0) refuseInEngine("domains = " + text(domains) + ": must be >= 1, or 0 (by the number of bodies)");
 	try {
-		yade::requireInRange({ linearDamping, slidingStiffnessFactor }, neck);
+		yade::requireInRange(pairOptions(), neck);
 		limitRuleOf(limit);
 	} catch (const std::invalid_argument& refusal) {
 		refuseInEngine(refusal.what());
@@ -80,7 +80,7 @@ int JKRWadaEngine::threadsOrYades() const { return threads > 0 ? threads : omp_g
 contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<contact_law::Material>& materials) const
 {
 	Dynamics::Options options;
-	options.pairs = { linearDamping, slidingStiffnessFactor };
+	options.pairs = pairOptions();
 	options.neck = neck;
 	options.domains = domains;
 	options.threads = threadsOrYades();

@@ -26,10 +26,10 @@ def given():
     )
 
 
-def tracks(start, steps, step=0.1, damping=0, neck=0, limit="held", sliding_factor=1):
+def tracks(start, steps, step=0.1, neck=0, limit="held", **options):
     """What the reference is given, positions and energies of functors and engine after each of some steps, and the
     bonds that broke."""
-    law = dict(damping=damping, neck=neck, limit=limit, sliding_factor=sliding_factor)
+    law = dict(neck=neck, limit=limit, **options)
     new_scene(step * unit, **law)
     start()
     found = {"given": {**given(), **law}}
@@ -38,7 +38,7 @@ def tracks(start, steps, step=0.1, damping=0, neck=0, limit="held", sliding_fact
     found["broken"] = broken() if neck else None
     new_scene(step * unit)
     start()
-    fused_engine(linearDamping=damping, neck=neck, limit=limit, slidingStiffnessFactor=sliding_factor)
+    fused_engine(**attributes(law))
     found["engine"] = record(steps)
     return found
 
@@ -79,6 +79,7 @@ def grains(name):
         "cut": lambda: converging(12, 1, [one, other], [1e-7, 1.5e-7], speed=12),
         "cut-viscous": lambda: cluster(10, 5, [viscous, soft_viscous], [1e-7, 1.3e-7], speed=6, spin=1e8),
         "S17's sliding": lambda: converging(12, 1, [one, other], [1e-7, 1.5e-7], speed=12),
+        "stiff rolling": lambda: converging(12, 2, [one, other], [1e-7, 1.5e-7], speed=20),
         "bonded": lambda: cluster(12, 4, [one], [1e-7], speed=10, spin=2e8),
         "bonded-viscous": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
     }[name]
@@ -94,6 +95,7 @@ CASES = {
     "cut": (300, {"limit": "cut"}, "sliding rolling twisting connection"),
     "cut-viscous": (300, {"limit": "cut"}, "sliding rolling twisting drag"),
     "S17's sliding": (300, {"limit": "cut", "sliding_factor": 2}, "sliding rolling twisting connection"),
+    "stiff rolling": (300, {"sliding_factor": 2.5, "rolling_factor": 8}, "sliding rolling twisting connection"),
     "bonded": (250, {"neck": 0.3, "step": 0.05}, "bondBreaking sliding rolling twisting"),
     "bonded-viscous": (250, {"neck": 0.5, "step": 0.05}, "bondBreaking sliding rolling twisting drag"),
 }

@@ -88,7 +88,8 @@ def by_functors_and_back():
     """Two O.steps of the engine, by the functors' steps."""
     new, dt, O.trackEnergy = same(), O.dt, True  # the functors book nothing without
     O.dt /= new.subSteps
-    O.engines = functor_engines(new.linearDamping, 0, new.neck, new.slidingStiffnessFactor, limit=new.limit)
+    factors = new.slidingStiffnessFactor, new.rollingStiffnessFactor
+    O.engines = functor_engines(new.linearDamping, 0, new.neck, *factors, limit=new.limit)
     O.engines[2].loopOnSortedInteractions = True
     steps(2 * new.subSteps)
     O.engines = [new]

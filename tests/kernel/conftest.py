@@ -39,10 +39,13 @@ class Kernel:
         as_c = {int: ctypes.c_int, float: ctypes.c_double, np.ndarray: lambda a: a.ctypes.data_as(ctypes.c_void_p)}
         getattr(self.library, name)(*(as_c[type(a)](a) for a in arguments))
 
-    def constants(self, material1="ice", radius1=1e-7, material2="ice", radius2=1e-7, damping=0.0, sliding=1.0):
+    def constants(
+        self, material1="ice", radius1=1e-7, material2="ice", radius2=1e-7, damping=0.0, sliding=1.0, rolling=1.0
+    ):
         out = np.empty(len(self.constant_names))
         one, other = array(MATERIALS[material1]), array(MATERIALS[material2])
-        self.call("pairConstants", one, radius1, other, radius2, float(damping), float(sliding), out)
+        options = map(float, (damping, sliding, rolling))
+        self.call("pairConstants", one, radius1, other, radius2, *options, out)
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 
     def cube_root(self, x):

@@ -49,6 +49,14 @@ def test_sliding_as_s17_prints_it(kernel):
     assert changed == ["slidingStiffness"]
 
 
+def test_stiff_rolling_has_the_same_limit(kernel):
+    """xi_crit is the material's: torque and energy at the limit rise with k_r, 4 F_c/R times the factor."""
+    ours, stiff = kernel.constants(), kernel.constants(rolling=8)
+    assert stiff.rollingStiffness == pytest.approx(8 * 4 * ours.pullOffForce / ours.reducedRadius, rel=1e-14)
+    changed = [name for name in kernel.constant_names if getattr(ours, name) != getattr(stiff, name)]
+    assert changed == ["rollingStiffness"]
+
+
 # --- normal law ----------------------------------------------------------------------------------
 
 

@@ -78,16 +78,19 @@ def test_rebound_converges_with_second_order(kind, radius2, mover):
     assert coarse < 1e-2 and fine < 2e-4 and coarse / fine > 3.2**3  # second order gives 64, first order 8
 
 
-@pytest.mark.parametrize("mode", ["sliding", "rolling", "twisting"])
+STIFF = {"sliding_factor": 2.5, "rolling_factor": 8}
+
+
+@pytest.mark.parametrize("mode, factors", [("sliding", {}), ("rolling", {}), ("twisting", {}), ("rolling", STIFF)])
 @pytest.mark.parametrize("radius2", [1e-7, 2.5e-7])
-def test_driven_past_the_limit(mode, radius2):
+def test_driven_past_the_limit(mode, factors, radius2):
     """Two blocked grains at equilibrium are turned until a displacement is 8 times its limit: force at the limit,
     stored k/2 crit^2, dissipated k crit (total - crit) (A22 eqs 13-26), and the other two modes untouched. The
     pointers' finite angles (up to 8 crit/r, 6 %) enter in second order, less for smaller grains' limits."""
-    c = constants(ice(), 1e-7, ice(), radius2)
-    new_scene(0.1 * c["timeUnit"])
+    c, factor = constants(ice(), 1e-7, ice(), radius2), factors.get(f"{mode}_factor", 1)
+    new_scene(0.1 * c["timeUnit"], **factors)
     r1, r2 = 1e-7, radius2
-    limit, stiffness = c[f"critical{mode.capitalize()}"], c[f"{mode}Stiffness"]
+    limit, stiffness = c[f"critical{mode.capitalize()}"], factor * c[f"{mode}Stiffness"]
     steps = 3200
     rate = 8 * limit / (steps * O.dt)
     spins = dict(

@@ -73,7 +73,7 @@ def test_the_limits_of_stability_and_of_the_tolerance():
     [
         {"viscoelasticTime": 4e-12, "poisson": 0.3, "grainRadius": 3e-7, "density": 800, "criticalRolling": 2e-9},
         {"material": "silicate", "viscoelasticTime": 1e-11, "young": 30e9, "surfaceEnergy": 0.1},
-        {"neck": 0.5, "slidingStiffnessFactor": 2},
+        {"neck": 0.5, "slidingStiffnessFactor": 2, "rollingStiffnessFactor": 8},
     ],
     ids=str,
 )

@@ -78,4 +78,5 @@ def test_what_the_functors_cannot_do_is_refused_when_it_is_set():
     for setting, words in SETTINGS.items():
         with refused(Exception, words):
             exec(setting, {**globals(), "functor": functor})
-    assert (functor.linearDamping, functor.neck, functor.slidingStiffnessFactor) == (0.5, 0.3, 1)
+    given = functor.linearDamping, functor.neck, functor.slidingStiffnessFactor, functor.rollingStiffnessFactor
+    assert given == (0.5, 0.3, 1, 1)

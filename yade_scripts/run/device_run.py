@@ -72,6 +72,7 @@ class DeviceRun:
             limit=self.given.limit,
             neck=self.given.neck,
             sliding_stiffness_factor=self.given.slidingStiffnessFactor,
+            rolling_stiffness_factor=self.given.rollingStiffnessFactor,
         )
         return Start(_grains(self.scene), options, self._steps_to_stop())
 

@@ -44,7 +44,10 @@ class _Input(ctypes.Structure):
         *((name, ctypes.c_int) for name in "grains contacts kinds bonded mechanisms limit interval".split()),
         *((name, ctypes.c_int) for name in "slots pairs contactsOfAGrain".split()),
         ("steps", ctypes.c_longlong),
-        *((name, ctypes.c_double) for name in "dt neck linearDamping slidingStiffnessFactor skin".split()),
+        *(
+            (name, ctypes.c_double)
+            for name in "dt neck linearDamping slidingStiffnessFactor rollingStiffnessFactor skin".split()
+        ),
         *((name, ctypes.c_void_p) for name in "position velocity spin mass inertia radius materials".split()),
         *((name, ctypes.c_void_p) for name in "kind aggregate touching".split()),
     ]
@@ -132,7 +135,7 @@ class Collision:
         Of LIMITS.
     neck : float
         Of sintered bonds between grains that touch, over their radius; 0: none.
-    linear_damping, sliding_stiffness_factor : float
+    linear_damping, sliding_stiffness_factor, rolling_stiffness_factor : float
 
     Raises
     ------
@@ -152,6 +155,7 @@ class Collision:
         neck=0.0,
         linear_damping=0.0,
         sliding_stiffness_factor=1.0,
+        rolling_stiffness_factor=1.0,
     ):
         self.library, self._of = library, library._of
         number = len(grains.position)
@@ -192,6 +196,7 @@ class Collision:
             neck=neck,
             linearDamping=linear_damping,
             slidingStiffnessFactor=sliding_stiffness_factor,
+            rollingStiffnessFactor=rolling_stiffness_factor,
             skin=SKIN * radius.min(),
             **{name: array.ctypes.data for name, array in arrays.items()},
         )

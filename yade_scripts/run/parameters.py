@@ -47,6 +47,7 @@ class RunParameters(Parameters):
     slidingStiffnessFactor: float = parameter(
         1.0, POSITIVE, "stiffness of sliding k_s over 8 a0 G*: 1 (W07, A22), or 2 (S17 eqs 11 and 12 as printed)", "1"
     )
+    rollingStiffnessFactor: float = parameter(1.0, POSITIVE, "stiffness of rolling k_r over 4 F_c/R (W07, A22)", "1")
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),
