@@ -26,7 +26,7 @@ from ..runs.measured import UNLIKE
 from ..theory import ICE
 from .columns import NotMeasured, group
 from .comparison import Row
-from .estimates import Estimate, ending, estimate, fraction
+from .estimates import Estimate, beside, ending, estimate, fraction
 from .figures import COLOURS, plain_ticks, points
 from .study import Study
 
@@ -34,6 +34,8 @@ STICKING, BOUNCING, _, EROSION, _ = KINDS
 SLOW, ERODING = 5.0, 13.0  # v_break (3.82 m/s for ice); from 13 on most erode, chosen after the runs
 COMPACT, MANY_CONTACTS = 0.4, 6.0
 EQUAL, HEAD_ON = 0.5, 0.5  # mass ratio at least, impact parameter at most
+GROWING = 5.0, 18.0  # v_break: where the mean growth efficiency falls through 0
+RATIOS = {"below 1/16": (0.0, 1 / 16), "1/16 to 1/4": (1 / 16, 1 / 4), "1/4 to 1": (1 / 4, 1.0)}  # of masses
 
 
 def _measure(run, row):
@@ -86,6 +88,16 @@ def bouncing_exponent(runs):
     return -by_speed / by_size
 
 
+def critical_speed(runs):
+    """Speed [v_break] above which targets lose more than they gain: where the growth efficiency (N_largest -
+    N_target)/N_projectile, linear in ln v over GROWING, falls through 0."""
+    if runs.speed.nunique() < 3:
+        return np.nan
+    q = runs.mass_ratio
+    slope, level = np.polyfit(np.log(runs.speed), (runs.largest * (1.0 + q) - 1.0) / q, 1)
+    return np.exp(-level / slope)
+
+
 def rows(runs):
     """What papers say of when aggregates bounce, beside the runs; then what the runs add. Slow: below SLOW."""
     chosen_by_none = drawn(runs)
@@ -118,8 +130,26 @@ def rows(runs):
     lost = average(slow_known.lost_in_compression[central & dense])
     what = "dissipated until the largest compression, slow, compressed of filling 0.35 to 0.5, b < 0.7, equal"
     yield Row(what, lost, None, "nearly 90 %, of another measure", "Oshiro 2025")
+    yield from _growth(known)
     yield from _outcomes(slowly, known)
     yield from _predictions(runs)
+
+
+def _growth(known):
+    """Up to which speed targets grow, over all impact parameters: against the mass ratio, and the structure."""
+    known = known[known.speed.between(*GROWING)]
+    bpca, of_ratio = known[known.structure == "bpca"], []
+    for words, (low, high) in RATIOS.items():
+        of_ratio.append(bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)])
+        yield Row(f"critical velocity of BPCA, masses {words} [v_break]", estimate(critical_speed, of_ratio[-1]))
+    ratio = beside(critical_speed, of_ratio[0], of_ratio[-1], np.divide)
+    what = "critical velocity of BPCA, masses below 1/16 over 1/4 to 1"
+    yield Row(what, ratio, (0.75, 1.33), "hardly another: to a third", "Wada 2013")
+    for name in ("bcca", "cpe", "compressed"):
+        yield Row(
+            f"critical velocity of {name}, all masses [v_break]",
+            estimate(critical_speed, known[known.structure == name]),
+        )
 
 
 def _outcomes(slowly, known):

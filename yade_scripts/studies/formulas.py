@@ -1,6 +1,6 @@
 """Tables of the page of formulas: strength and structure of compressed BCCA clusters, as codes of disks use them.
 
-cells: clusters are compressed in periodic cells and then stretched along x until they break (tensile strength as in
+desk: clusters are compressed in periodic cells and then stretched along x until they break (tensile strength as in
 Tatsuuma et al. 2019, compressive strength as in Kataoka et al. 2013; states serve the conduction of heat). Eight
 clusters a point: fillings, surface energy, grain radius, critical rolling displacement and material, half the rate, and
 four times as many grains at two points. Rows stand in the order of their worth."""
@@ -39,4 +39,4 @@ def tables():
         for seed in seeds:
             name = "-".join([row["material"], *varied, f"s{seed}"])
             found.append({"description": name, **row, "seed": seed, "threads": 1, "out": f"runs/formulas/{name}"})
-    return {"cells": (found, HEAD)}
+    return {"desk": (found, HEAD)}
