@@ -27,6 +27,7 @@ from .outcome_table import (
     TOUCHING,
     Axis,
     OutcomeTable,
+    axes_of,
     write_outcomes,
 )
 from .query import FOLDER, RUNS_FILE, outcomes_file
@@ -89,12 +90,7 @@ OF_IMPACT = {
 def outcome_axes(structure, averaged):
     """Axes of a table of outcomes; at each impact parameter only sizes and mass ratios of the runs."""
     sizes, ratios = (BEYOND_SIZES, BEYOND_RATIOS) if averaged else (SIZES, RATIOS)
-    axes = (
-        Axis("velocity", "log10", VELOCITIES),
-        Axis("grains", "log10", sizes),
-        Axis("mass_ratio", "log10", ratios),
-        Axis("filling", "linear", np.array(FILLINGS[structure])),
-    )
+    axes = axes_of(VELOCITIES, sizes, ratios, np.array(FILLINGS[structure]))
     return axes if averaged else (*axes, Axis("impact_square", "linear", np.linspace(0.0, 1.0, 5)))
 
 

@@ -53,6 +53,12 @@ class Axis:
         return (np.asarray(value) > self.nodes[-1]).astype(int) - (np.asarray(value) < self.nodes[0])
 
 
+def axes_of(velocity, grains, mass_ratio, filling):
+    """The axes that every table of outcomes has, of these nodes."""
+    scaled = {"velocity": velocity, "grains": grains, "mass_ratio": mass_ratio}
+    return (*(Axis(name, "log10", nodes) for name, nodes in scaled.items()), Axis("filling", "linear", filling))
+
+
 @dataclass(frozen=True)
 class OutcomeTable:
     """A table on a grid: axes (of Axis), columns (names), values (nodes of each axis, columns) and comments (lines)."""

@@ -8,11 +8,10 @@ from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..printable import Refused
 from ..report.rows import measure as measure_runs
 from .columns import measure
-from .outcome_table import COLUMNS, ERRORS, INSIDE, LEFT, PROBABILITIES, TOUCHING, Axis, OutcomeTable, write_outcomes
+from .outcome_table import COLUMNS, ERRORS, INSIDE, LEFT, PROBABILITIES, TOUCHING, OutcomeTable, axes_of, write_outcomes
 from .rules import KINDS, OF_KIND, change
 from .variables import variables
 
-AXES = {"velocity": "log10", "grains": "log10", "mass_ratio": "log10", "filling": "linear"}
 # Relative: values of an axis in a row that are closer are of one node. Each aggregate that grew has its own filling.
 APART = {"velocity": 0.02, "grains": 0.02, "mass_ratio": 0.02, "filling": 0.5}
 ROOM = 0.02  # beyond the least and the greatest of the values, where they are all of one node
@@ -44,24 +43,24 @@ def outcome_table(runs, file=None, **nodes):
     ValueError
         For an axis that is none, and without a run that met and is decided.
     """
-    if unknown := set(nodes) - set(AXES):
-        raise ValueError(f"{min(unknown)}: no axis; must be {', '.join(AXES)}")
+    if unknown := set(nodes) - set(APART):
+        raise ValueError(f"{min(unknown)}: no axis; must be {', '.join(APART)}")
     measured, problems = measure_runs(runs, measure)
     found = pandas.DataFrame([row for _, row in measured])
     known = found[~found.outcome.isin((NEVER_MET, UNDECIDED))] if len(found) else found
     if not len(known):
         raise Refused(problems[0] if problems else "no run that met and is decided; must be one or more")
     points = variables(found)
-    axes = tuple(Axis(name, scale, _nodes(name, points[name], nodes.get(name))) for name, scale in AXES.items())
+    axes = axes_of(*(_nodes(name, points[name], nodes.get(name)) for name in APART))
+    shape = [len(axis.nodes) for axis in axes]
     place = np.column_stack([axis.position(points[axis.name]) for axis in axes])
-    node = np.ravel_multi_index(np.rint(place).astype(int).T, [len(axis.nodes) for axis in axes])
+    node = np.ravel_multi_index(np.rint(place).astype(int).T, shape)
     rows = [_row(own) for _, own in found.groupby(node)]
-    there, grid = np.unique(node), np.indices([len(axis.nodes) for axis in axes]).reshape(len(axes), -1).T
+    there, grid = np.unique(node), np.indices(shape).reshape(len(axes), -1).T
     there, rows = zip(*[(at, row) for at, row in zip(there, rows) if row["runs"]])
     nearest = cKDTree(grid[list(there)]).query(grid)[1]
     values = pandas.DataFrame(rows).iloc[nearest].reset_index(drop=True)
     values[INSIDE] = np.isin(np.arange(len(grid)), there)
-    shape = [len(axis.nodes) for axis in axes]
     values = values[list(COLUMNS)].fillna(0.0).to_numpy(dtype=float).reshape(*shape, -1)
     made = OutcomeTable(axes, COLUMNS, values, tuple(ABOUT.format(runs=len(known)).splitlines()))
     if file is not None:

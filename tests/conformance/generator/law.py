@@ -113,9 +113,9 @@ def turned(a, angle):
 
 
 def displacements(c, n, n1, n2):
-    """zeta and xi of contact pointers n1, n2, and the lever z: A24 (A1), (A2)."""
+    """zeta and xi of contact pointers n1, n2 (..., 3), and the lever z (..., 1): A24 (A1), (A2)."""
     zeta0 = c.r1 * n1 - c.r2 * n2
-    z = zeta0 @ n
+    z = (zeta0 * n).sum(axis=-1, keepdims=True)
     return zeta0 - z * n, c.R * (n1 + n2), z
 
 

@@ -287,42 +287,30 @@ def after_the_hit(c, x, v, duration, steps):
     """Positions (6, 3) of a chain of like grains at x, without contact forces, with velocities v: by leapfrog, in
     doubles, with springs that are returned to their limits after each step."""
     c = SimpleNamespace(**{name: float(number) for name, number in vars(c).items()})
-    r, h, w, inertia = c.r1, duration / steps, 0 * v, 0.4 * c.m1 * c.r1**2
-    force, torque, turn = 0 * v, 0 * v, lambda n, angle: n + np.cross(angle, n + np.cross(angle, n) / 2)
+    h, w, inertia = duration / steps, 0 * v, 0.4 * c.m1 * c.r1**2
+    F, M, turn = 0 * v, 0 * v, lambda n, angle: n + np.cross(angle, n + np.cross(angle, n) / 2)
     n = (x[:-1] - x[1:]) / np.linalg.norm(x[:-1] - x[1:], axis=1, keepdims=True)
     n1, n2, phi = -n, n, np.zeros((5, 1))
     for _ in range(steps):
-        v, w = v + h / 2 * force / c.m1, w + h / 2 * torque / inertia
+        v, w = v + h / 2 * F / c.m1, w + h / 2 * M / inertia
         x, n1, n2, before = x + h * v, turn(n1, h * w[:-1]), turn(n2, h * w[1:]), n
         distance = np.linalg.norm(x[:-1] - x[1:], axis=1, keepdims=True)
         n = (x[:-1] - x[1:]) / distance
         phi = phi + h * ((w[:-1] - w[1:]) * (before + n) / 2).sum(axis=1, keepdims=True)
         phi = np.clip(phi, -c.twist, c.twist)
-        zeta, xi, _ = of_pointers(c, n, n1, n2)
+        zeta, xi, _ = displacements(c, n, n1, n2)
         rolls = np.linalg.norm(xi, axis=1, keepdims=True) > c.roll
-        n1, n2 = returned(n1, n2, zeta, c.slide, 2 * r, -2 * r)
-        n1, n2 = returned(n1, n2, np.where(rolls, of_pointers(c, n, n1, n2)[1], 0), c.roll, r, r)
-        zeta, xi, z = of_pointers(c, n, n1, n2)
-        delta, u = 2 * r - distance, 1.0
-        assert np.all(delta > -c.dc) and np.all(np.linalg.norm(x[:-2] - x[2:], axis=1) > 2 * r)
+        n1, n2 = returned(n1, n2, zeta, c.slide, c.r1 + c.r2, -c.r1 - c.r2)
+        n1, n2 = returned(n1, n2, np.where(rolls, displacements(c, n, n1, n2)[1], 0), c.roll, c.r1, c.r2)
+        delta, u, F, M = c.r1 + c.r2 - distance, 1.0, 0 * v, 0 * v
+        assert np.all(delta > -c.dc) and np.all(np.linalg.norm(x[:-2] - x[2:], axis=1) > 2 * c.r1)
         for _ in range(9):
             u = u - (3 * u**4 - 2 * u - delta / c.d0) / (12 * u**3 - 2)
-        pull = 4 * c.Fc * (u**6 - u**3) * n + c.ks * z / distance * zeta
-        rolling, twisting = c.R * c.kr * xi, c.kt * phi * n
-        force, torque = np.zeros_like(x), np.zeros_like(x)
-        force[:-1] += pull
-        force[1:] -= pull
-        torque[:-1] += np.cross(n1, -r * c.ks * zeta - rolling) - twisting
-        torque[1:] += np.cross(n2, r * c.ks * zeta - rolling) + twisting
-        v, w = v + h / 2 * force / c.m1, w + h / 2 * torque / inertia
+        sliding, M[:-1], torque2 = springs(c, n, distance, n1, n2, phi)
+        F[:-1], M[1:] = sliding + force(c, u) * n, M[1:] + torque2
+        F[1:] -= sliding + force(c, u) * n
+        v, w = v + h / 2 * F / c.m1, w + h / 2 * M / inertia
     return x
-
-
-def of_pointers(c, n, n1, n2):
-    """displacements() of contacts, rows (5, 3)."""
-    zeta0 = c.r1 * (n1 - n2)
-    z = (zeta0 * n).sum(axis=1, keepdims=True)
-    return zeta0 - z * n, c.R * (n1 + n2), z
 
 
 def chain():
