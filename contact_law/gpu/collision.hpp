@@ -57,12 +57,17 @@ namespace gpu {
 		LimitRule limit;
 		PairOptions options;
 		double dt, neck, skin;
+		long long changesAt; // at this step, a sample's, dt and interval become these; 0: never
+		int intervalAfter;
+		double dtAfter;
 		bool uniform; // all pairs have `common`, all bonds `commonBond`
 		PairConstants<double> common;
 		BondConstants<double> commonBond;
 
 		// ---- where it is ----
 		int slots, pairs, samples;
+		long long changed; // step and time since which dt is what it is
+		double timeOfChange;
 		Failure failure;
 		bool born, outdated; // whether pairs touch that did not; whether the list of pairs may miss one
 		Ranks ranks;

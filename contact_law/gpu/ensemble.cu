@@ -156,9 +156,9 @@ extern "C" {
 
 // Of a collision at its start; vectors (N, 3), pairs (M, 2).
 struct CollisionInput {
-	int grains, contacts, kinds, bonded, mechanisms, limit, interval, slots, pairs, contactsOfAGrain;
-	long long steps;
-	double dt, neck, linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, skin;
+	int grains, contacts, kinds, bonded, mechanisms, limit, interval, slots, pairs, contactsOfAGrain, intervalAfter;
+	long long steps, changesAt;
+	double dt, dtAfter, neck, linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, skin;
 	const double *position, *velocity, *spin, *mass, *inertia, *radius, *materials;
 	const int *kind, *aggregate, *touching;
 };
@@ -184,9 +184,10 @@ void* collision_start(const CollisionInput* given)
 {
 	const CollisionInput& g = *given;
 	Collision c {};
-	c.room = { g.grains, g.slots, g.pairs, g.contactsOfAGrain, g.kinds, int(g.steps / g.interval) + 2 };
+	c.room = { g.grains, g.slots, g.pairs, g.contactsOfAGrain, g.kinds, int(g.steps / std::min(g.interval, g.intervalAfter)) + 2 };
 	c.grains = g.grains, c.mechanisms = g.mechanisms, c.limit = LimitRule(g.limit), c.interval = g.interval;
 	c.bonds = g.bonded ? g.contacts : 0, c.slots = g.contacts, c.stepsLeft = g.steps;
+	c.changesAt = g.changesAt, c.intervalAfter = g.intervalAfter, c.dtAfter = g.dtAfter;
 	c.dt = g.dt, c.neck = g.neck, c.skin = g.skin;
 	c.options = { g.linearDamping, g.slidingStiffnessFactor, g.rollingStiffnessFactor };
 	c.uniform = true;

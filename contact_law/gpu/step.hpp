@@ -364,6 +364,8 @@ namespace gpu {
 		}
 	}
 
+	GPU inline double timeOf(const Collision& c) { return c.timeOfChange + double(c.step - c.changed) * c.dt; }
+
 	// Velocities of the positions' moment, and a row of the history.
 	GPU RARE inline void takeSample(Collision& c)
 	{
@@ -389,9 +391,28 @@ namespace gpu {
 		{
 			if (c.samples < c.room.samples) {
 				sumOf(c, c.sample[c.samples]);
-				c.sample[c.samples].time = double(c.step) * c.dt;
+				c.sample[c.samples].time = timeOf(c);
 				++c.samples;
 			}
+		}
+		BARRIER();
+	}
+
+	// A step of another length from a sample on: the kick is what belongs before it by the old one, the rest by the new (MODEL.md).
+	GPU RARE inline void changeStep(Collision& c)
+	{
+		const double less = c.dt - c.dtAfter;
+		EACH(i, c.grains)
+		{
+			const Push before = pushOn(c, i, c.forceBefore, c.torqueBefore1, c.torqueBefore2);
+			c.velocity.set(i, c.velocity[i] + (less / c.mass[i]) * before.force);
+			c.spin.set(i, c.spin[i] + (less / c.inertia[i]) * before.torque);
+		}
+		BARRIER();
+		FIRST
+		{
+			c.timeOfChange = timeOf(c), c.changed = c.step;
+			c.dt = c.dtAfter, c.interval = c.intervalAfter;
 		}
 		BARRIER();
 	}
@@ -437,9 +458,10 @@ namespace gpu {
 			if (c.outdated) makeLists(c);
 			BARRIER();
 			if (c.failure != Failure::None) return;
-			const bool sampled = c.step % c.interval == 0 || c.stepsLeft == 0;
+			const bool sampled = (c.step - c.changed) % c.interval == 0 || c.stepsLeft == 0;
 			addForces<mechanisms, limit>(c, c.dt, sampled);
 			if (sampled) takeSample(c);
+			if (c.step == c.changesAt) changeStep(c);
 		}
 	}
 

@@ -23,6 +23,7 @@ ROWS = {
     "like": "packing=bcca grains=30 velocity=15 impact=0.3",
     "mixed": "packing=bcca grains=30 velocity=15 impact=0.3 material=ice,silicate materialFraction=0.4",
     "turning": "packing=bpca grains=30 velocity=3 seed=2 spin=2e7",
+    "shorter": "packing=bcca grains=30 velocity=15 stepFraction=0.3 impactStepFraction=0.08",
     "sintered": "packing=bcca grains=30 velocity=15 seed=3 stepFraction=0.1 neck=0.3",
 }
 
@@ -49,7 +50,7 @@ def both(tmp_path_factory):
         text=True,
     )
     theirs = study(folders[1], "a.table", "-j", "2")
-    assert "4 done, 0 failed" in ours.stdout and "4 done" in theirs.stdout, ours.stderr + theirs.stderr
+    assert "5 done, 0 failed" in ours.stdout and "5 done" in theirs.stdout, ours.stderr + theirs.stderr
     return folders
 
 

@@ -58,23 +58,31 @@ def ran(kind, steps, **options):
     return one.read()
 
 
+CHANGE = (500, 0.1 * TIME_UNIT, 25)  # after so many steps to these, of so many between samples
+
+
 @pytest.mark.in_yade
-@pytest.mark.parametrize("kind", SCENES)
-def test_the_ensemble_moves_grains_as_the_engine_does(kind):
+@pytest.mark.parametrize(
+    "kind, change", [*((kind, None) for kind in SCENES), *((kind, CHANGE) for kind in ("drag", "bonds"))]
+)
+def test_the_ensemble_moves_grains_as_the_engine_does(kind, change):
     grains, steps = two_clusters(kind), 1000
     options = {name: value for name, value in SCENES[kind][2].items() if name != "mechanisms"}
     new_scene(0.05 * TIME_UNIT, "fused", subSteps=50, **options)
     materials = [ice(**dict(zip(MATERIAL, row))) for row in grains.materials.tolist()]
     for x, v, w, r, k in zip(grains.position, grains.velocity, grains.spin, grains.radius, grains.kind):
         grain(x, r, materials[k], v, w)
-    O.run(steps // 50, True)
+    O.run(10, True)
+    O.engines[0].subSteps = CHANGE[2] if change else 50
+    O.run((steps - 500) // O.engines[0].subSteps, True)
     there, counts = contact_law.snapshot(), O.engines[0].statistics()
 
-    ours = ran(kind, steps)
+    ours = ran(kind, steps, change=change)
     position, velocity, spin = ours.motion()
     samples = ours.samples()
     pairs, force, bonded = ours.contacts()
     speed = np.abs(there["velocity"]).max()
+    assert samples["time"][-1] == pytest.approx(there["time"], rel=1e-12)
     assert ours.failure is None and samples["formed"][-1] >= 2
     assert np.abs(position - there["position"]).max() < 1e-11 * RADIUS
     assert np.abs(velocity - there["velocity"]).max() < 1e-9 * speed

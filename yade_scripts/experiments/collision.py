@@ -195,10 +195,11 @@ def prepare(parameters, threads, constants=None):
         duration = default_duration(parameters, parameters.radius, constants["timeUnit"], touch or 0.0)
         parameters = parameters.changed(duration=duration)
     aggregate_radius = parameters.radius * parameters.grainRadius
-    controls, reason = [], time_step.reason(parameters, step_limit(parameters, constants))
+    controls, shorter, reason = [], None, time_step.reason(parameters, step_limit(parameters, constants))
     if parameters.impactStepFraction is not None:
         until = (touch or 0.0) + _duration_of_impact(parameters)
-        controls.append(_impact_step(parameters, until))
+        shorter = ShorterStep(parameters, until)
+        controls.append(shorter.control)
         short, step = parameters.impactStepFraction, parameters.stepFraction
         reason = f"as given: {short:g} t0 until {until:.4g} s, then {step:g} t0"
     rest = Rest(parameters, constants, aggregate_radius, touch) if parameters.endWhenApart else None
@@ -222,6 +223,7 @@ def prepare(parameters, threads, constants=None):
         build=build,
         placed=(pair, velocities),
         rest=rest,
+        shorter=shorter,
         series=lambda state: {**series(state, aggregate_radius), **resting},
         law={"neck": parameters.neck},
         step_choice=reason,
@@ -361,19 +363,27 @@ def _duration_of_impact(parameters):
     return IMPACT_RADII * parameters.radius * parameters.grainRadius / parameters.velocity
 
 
-def _impact_step(parameters, until):
-    """Scene.control that has as many small steps between samples, until a time [s], as impactStepFraction takes."""
-    ratio = parameters.stepFraction / parameters.impactStepFraction
+class ShorterStep:
+    """As many small steps between samples as impactStepFraction takes, until a time [s]: of a scene of YADE, or on a
+    device."""
 
-    def set_steps(recorder, state):
+    def __init__(self, parameters, until):
+        self._ratio, self._until = parameters.stepFraction / parameters.impactStepFraction, until * (1 - 1e-12)
+
+    def steps(self, usual):
+        """Between two samples, where there are `usual` ones later."""
+        return ceil(usual * self._ratio * (1 - 1e-12))
+
+    def samples(self, between):
+        """How many samples end with shorter steps; between: time from one to the next [s]."""
+        return int(self._until / between) + 1
+
+    def control(self, recorder, state):
         from yade.wrapper import Omega
 
         usual = recorder.schedule.interval
-        begun = state["time"] > until * (1 - 1e-12)
-        Omega().engines[0].subSteps = usual if begun else ceil(usual * ratio * (1 - 1e-12))
+        Omega().engines[0].subSteps = usual if state["time"] > self._until else self.steps(usual)
         return False
-
-    return set_steps
 
 
 # ---- what is known without a run ----

@@ -31,9 +31,8 @@ class Start(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What a device gives at such a sample: the step, and what ensemble.Collision has of these names."""
+    """What a device gives at such a sample: what ensemble.Collision has of these names."""
 
-    step: int
     motion: tuple
     contacts: tuple
     samples: dict
@@ -61,13 +60,19 @@ class DeviceRun:
         self.stops = sorted(set(schedule.states) | self.checks | {schedule.samples})
         self.sample = self.states = 0
         self.resting = []  # (sample, time, 0 or 1)
+        self.short = 0, schedule.interval  # samples that end with shorter steps, and how many those are
+        if scene.shorter:
+            self.short = scene.shorter.samples(between), scene.shorter.steps(schedule.interval)
         self.folder = RunFolder(given.out, given.overwrite)
 
     def start(self):
+        samples, interval = self.short
+        usual = self.scene.time_step, self.schedule.interval
         options = dict(
-            steps=self.schedule.steps,
-            time_step=self.scene.time_step,
-            interval=self.schedule.interval,
+            steps=self._steps_until(self.schedule.samples),
+            time_step=usual[0] * usual[1] / interval,
+            interval=interval,
+            change=(samples * interval, *usual),
             mechanisms=mechanisms_of(self.given),
             limit=self.given.limit,
             neck=self.given.neck,
@@ -76,8 +81,12 @@ class DeviceRun:
         )
         return Start(_grains(self.scene), options, self._steps_to_stop())
 
+    def _steps_until(self, sample):
+        short, interval = self.short
+        return min(sample, short) * interval + max(0, sample - short) * self.schedule.interval
+
     def _steps_to_stop(self):
-        return (self.stops[0] - self.sample) * self.schedule.interval
+        return self._steps_until(self.stops[0]) - self._steps_until(self.sample)
 
     def look(self, seen):
         """What a sample at which the run has stopped is for; the steps until the next one, None when the run has come
@@ -114,7 +123,7 @@ class DeviceRun:
     def _state(self, seen):
         """The state at the latest sample, as contact_law.snapshot() has it, with the arrays of the scene's grains."""
         (position, velocity, spin), (pairs, force, bonded) = seen.motion, seen.contacts
-        found = {"time": seen.step * self.scene.time_step, "position": position, "velocity": velocity}
+        found = {"time": float(seen.samples["time"][-1]), "position": position, "velocity": velocity}
         radius = np.concatenate([packing.radius for packing in self.scene.placed[0]])
         found |= {"angular_velocity": spin, "radius": radius, **self.scene.grains}
         found |= {"contact_pairs": pairs, "contact_normal_force": force, "contact_bonded": bonded}

@@ -42,12 +42,10 @@ class DeviceError(RuntimeError):
 class _Input(ctypes.Structure):
     _fields_ = [
         *((name, ctypes.c_int) for name in "grains contacts kinds bonded mechanisms limit interval".split()),
-        *((name, ctypes.c_int) for name in "slots pairs contactsOfAGrain".split()),
-        ("steps", ctypes.c_longlong),
-        *(
-            (name, ctypes.c_double)
-            for name in "dt neck linearDamping slidingStiffnessFactor rollingStiffnessFactor skin".split()
-        ),
+        *((name, ctypes.c_int) for name in "slots pairs contactsOfAGrain intervalAfter".split()),
+        *((name, ctypes.c_longlong) for name in "steps changesAt".split()),
+        *((name, ctypes.c_double) for name in "dt dtAfter neck linearDamping".split()),
+        *((name, ctypes.c_double) for name in "slidingStiffnessFactor rollingStiffnessFactor skin".split()),
         *((name, ctypes.c_void_p) for name in "position velocity spin mass inertia radius materials".split()),
         *((name, ctypes.c_void_p) for name in "kind aggregate touching".split()),
     ]
@@ -136,6 +134,8 @@ class Collision:
     neck : float
         Of sintered bonds between grains that touch, over their radius; 0: none.
     linear_damping, sliding_stiffness_factor, rolling_stiffness_factor : float
+    change : (int, float, int), optional
+        After so many steps, at a sample, time_step and interval become these.
 
     Raises
     ------
@@ -156,6 +156,7 @@ class Collision:
         linear_damping=0.0,
         sliding_stiffness_factor=1.0,
         rolling_stiffness_factor=1.0,
+        change=None,
     ):
         self.library, self._of = library, library._of
         number = len(grains.position)
@@ -179,6 +180,7 @@ class Collision:
             "touching": touching,
         }
         self.grains, self.aggregate, self.radius = number, arrays["aggregate"], radius
+        change = dict(zip(("changesAt", "dtAfter", "intervalAfter"), change or (0, time_step, interval)))
         unlike = radius.max() / radius.min()
         given = _Input(
             grains=number,
@@ -198,6 +200,7 @@ class Collision:
             slidingStiffnessFactor=sliding_stiffness_factor,
             rollingStiffnessFactor=rolling_stiffness_factor,
             skin=SKIN * radius.min(),
+            **change,
             **{name: array.ctypes.data for name, array in arrays.items()},
         )
         self.handle = ctypes.c_void_p(library.require(self._of.collision_start(ctypes.byref(given))))

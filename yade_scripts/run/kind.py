@@ -42,9 +42,11 @@ class Scene:
     grains: Mapping  # arrays (N,) that every state has: aggregate, of several materials material and mass
     build: Callable[[], None]  # makes the bodies (and the cell)
     series: Callable[[Mapping], Mapping[str, Any]]  # state -> {name: value} of the kind's own series
-    # Of a collision, for a device: packings and their velocities, and with endWhenApart when it is at rest.
+    # Of a collision, for a device: packings and their velocities, and where it has them, when it is at rest
+    # (collision.Rest) and a shorter step (collision.ShorterStep).
     placed: tuple | None = None
     rest: Any = None
+    shorter: Any = None
     law: Mapping = field(default_factory=dict)  # attributes of the contact law, in the engine and in the functors
     energy_is_conserved: bool = True  # whether all channels together are constant
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False

@@ -55,7 +55,6 @@ def why_not(parameters, library):
         "engine = functors": parameters.engine != "fused",
         "a plate": parameters.target == collision.WALL,
         "planar = 1": bool(parameters.planar),
-        "impactStepFraction": parameters.impactStepFraction is not None,
         "these springs": not library.runs(mechanisms_of(parameters)),
     }
     return next((reason for reason, given in reasons.items() if given), None)
@@ -169,7 +168,7 @@ def _seen(one):
     """Seen of a Collision; DeviceError if it has failed."""
     if one.read().failure:
         raise DeviceError(one.failure)
-    return Seen(one.step, one.motion(), one.contacts(), one.samples())
+    return Seen(one.motion(), one.contacts(), one.samples())
 
 
 class _Process:
