@@ -147,9 +147,8 @@ def _add_export(commands):
     text, form = "write a run's states for ParaView, OVITO and others", argparse.RawDescriptionHelpFormatter
     parser = _of_one_run(commands, export, text, about, "FOLDER", "RUN/export", formatter_class=form)
     of_format = (
-        "vtk (grains and contacts), xyz (grains in one file of text), all (both), mstm (x y z radius) or ddscat "
+        "vtk (grains and contacts; default), xyz (grains, text), all (both), mstm (x y z radius), ddscat (dipoles)"
     )
-    of_format += "(dipoles); default: vtk"
     parser.add_argument("--format", choices=(*FORMATS, "all", *OPTICS), default="vtk", help=of_format)
     parser.add_argument("--state", metavar="K", type=_state, help="of the states only this one, from 0, or last")
     of_fragment = number(lambda fragment: fragment >= 0 and fragment == int(fragment), "a whole number >= 0")

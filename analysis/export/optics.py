@@ -86,9 +86,8 @@ def write_ddscat(run, folder, unit="m"):
         sites, material = _dipoles(_middled(state) / spacing, state.radius / spacing, Exported(state, None).material())
         effective = spacing * (3 * len(sites) / (4 * np.pi)) ** (1 / 3)
         head = f"d = {spacing / UNITS[unit]:.6g} {unit}, a_eff = {effective / UNITS[unit]:.6g} {unit}\n"
-        head += (
-            f"{len(sites)} = NAT\n1 0 0 = A_1 vector\n0 1 0 = A_2 vector\n1 1 1 = lattice spacings (d_x,d_y,d_z)/d\n"
-        )
+        head += f"{len(sites)} = NAT\n1 0 0 = A_1 vector\n0 1 0 = A_2 vector\n"
+        head += "1 1 1 = lattice spacings (d_x,d_y,d_z)/d\n"
         head += "0 0 0 = lattice offset x0(1-3)\nJA IX IY IZ ICOMP(x,y,z)\n"
         rows = np.column_stack([np.arange(1, len(sites) + 1), sites, *3 * [material + 1]])
         body = "".join("%d %d %d %d %d %d %d\n" % tuple(row) for row in rows.tolist())

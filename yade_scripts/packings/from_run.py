@@ -62,9 +62,8 @@ def record_of_state(path):
 def _materials_in(derived):
     """(what a packing says of its materials, overlap [m] at rest) of the constants in a run's record."""
     if not derived.get("materials"):
-        return {name: float(derived[name]) for name in OF_CONTACTS if name in derived}, float(
-            derived["equilibriumOverlap"]
-        )
+        known = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
+        return known, float(derived["equilibriumOverlap"])
     each = [SimpleNamespace(grainRadius=derived["grainRadius"], **own) for own in derived["materials"]]
     return {"materials": derived["materials"]}, overlaps(each)
 
