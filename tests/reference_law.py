@@ -15,7 +15,13 @@ import numpy as np
 from analysis import theory
 
 MODES = ("normal", "sliding", "rolling", "twisting")
-LOST = tuple(f"{mode}Dissipation" for mode in MODES[1:]) + ("connection", "disconnection", "drag", "bondBreaking")
+LOST = tuple(f"{mode}Dissipation" for mode in MODES[1:]) + (
+    "connection",
+    "disconnection",
+    "drag",
+    "springDamping",
+    "bondBreaking",
+)
 
 
 def cross(a, b):
@@ -34,16 +40,16 @@ def turned(v, angle):
 # ---- constants and normal motion, from analysis.theory; m1, m2: theory.Material ----
 
 
-def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1):
+def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1, spring_damping=0):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
     s = theory.shrunk_radius(beta)
     m1, m2 = (replace(m, density=m.density / s**3) for m in (m1, m2))
-    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor, rolling_factor)
+    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor, rolling_factor, spring_damping)
     of_springs = dict(r1=s * r1, r2=s * r2, R=c.reduced_radius)
     of_springs |= dict(ks=c.sliding_stiffness, kr=c.rolling_stiffness, kt=c.twisting_stiffness)
     limits = dict(zeta_crit=c.critical_sliding, xi_crit=c.critical_rolling, phi_crit=c.critical_twisting)
     normal = dict(d0=c.equilibrium_overlap, dc=c.pull_off_overlap, Fc=c.pull_off_force)
-    drag = dict(viscous=c.drag_per_contact_radius, damping=c.linear_drag)
+    drag = dict(viscous=c.drag_per_contact_radius, damping=c.linear_drag, springs=c.spring_damping)
     return SimpleNamespace(**of_springs, **limits, **normal, **drag, a0=c.equilibrium_contact_radius)
 
 
@@ -103,6 +109,8 @@ def return_to_limits(c, p, before, dt, lost):
     """Displacements beyond their limits return to them: twisting, then sliding, then rolling. Books what that
     dissipates."""
     phi, p.phi = p.phi, min(max(p.phi, -c.phi_crit), c.phi_crit)
+    if dt:
+        p.slipped[1] += (phi - p.phi) / dt * p.n
     lost["twistingDissipation"] += c.kt / 2 * (before.phi + p.phi) * (phi - p.phi)
     trial1, trial2, (zeta, xi) = p.n1, p.n2, displacements(c, p)
     slid, rolled = zeta @ zeta > c.zeta_crit**2, xi @ xi > c.xi_crit**2
@@ -114,6 +122,8 @@ def return_to_limits(c, p, before, dt, lost):
         return
     d1, d2 = p.n1 - trial1, p.n2 - trial2
     zeta_now, xi_now = displacements(c, p)
+    if dt:
+        p.slipped += [(zeta - zeta_now) / dt, cross(xi - xi_now, p.n) / (c.R * dt)]
     n_rate = (p.v - (p.v @ p.n) * p.n) / p.distance
     zeta_rate = c.r1 * cross(p.w1, d1) - c.r2 * cross(p.w2, d2) - ((c.r1 * d1 - c.r2 * d2) @ p.n) * n_rate
     xi_rate = c.R * (cross(p.w1, d1) + cross(p.w2, d2))
@@ -121,6 +131,34 @@ def return_to_limits(c, p, before, dt, lost):
     rolling = c.kr / 2 * ((before.xi + xi_now) @ (xi - xi_now) + dt * xi_now @ xi_rate)
     lost["slidingDissipation"] += sliding if slid and rolled else sliding + rolling if slid else 0
     lost["rollingDissipation"] += rolling if slid and rolled else sliding + rolling if rolled else 0
+
+
+# ---- damping of springs (MODEL.md, "Damped springs"); rates: of zeta, and of grains turning against each other ----
+
+
+def straining(c, p, dt):
+    """The grains' motion through a step as rates, and the normal half-way through it."""
+    distance = p.distance / (1 + dt / 2 * p.v @ p.n / p.distance)
+    n = p.n - (p.v - (p.v @ p.n) * p.n) * dt / 2 / p.distance
+    across = (c.r1 + c.r2) / distance * (p.v - (p.v @ n) * n)
+    return np.array([across - cross(c.r1 * p.w1 + c.r2 * p.w2, n), p.w1 - p.w2]), n
+
+
+AT_REST = SimpleNamespace(rates=np.zeros((2, 3)), rates_now=np.zeros((2, 3)))
+
+
+def powers(c, n, a, b):
+    """By springs, sliding, rolling and twisting."""
+    twist = (a[1] @ n) * (b[1] @ n)
+    return np.array([c.ks * a[0] @ b[0], c.R**2 * c.kr * (a[1] @ b[1] - twist), c.kt * twist])
+
+
+def damping(c, p, rates):
+    """As springs()."""
+    force = c.springs * c.ks * (rates[0] - (rates[0] @ p.n) * p.n)
+    twist = (rates[1] @ p.n) * p.n
+    couple = c.springs * (c.R**2 * c.kr * (rates[1] - twist) + c.kt * twist)
+    return -(c.r1 + c.r2) / p.distance * force, c.r1 * cross(p.n, force) - couple, c.r2 * cross(p.n, force) + couple
 
 
 # ---- springs that are cut at their limits and formed anew (S17 section 3.2; MODEL.md, "Cut springs") ----
@@ -197,7 +235,8 @@ class Scene:
         if not half_step:
             self.v, self.w = self.v - dt / 2 * self.F / self.mass, self.w - dt / 2 * self.T / self.inertia
             for (i, j), p in self.contacts.items():
-                p.v = self.v[i] - self.v[j]
+                p.v, p.w1, p.w2 = self.v[i] - self.v[j], self.w[i], self.w[j]
+                p.rates = straining(self.constants[i, j][0], p, 0.0)[0]
 
     def step(self):
         self.v, self.w = self.v + self.dt * self.F / self.mass, self.w + self.dt * self.T / self.inertia
@@ -240,8 +279,26 @@ class Scene:
         self.kick(
             dt, self.before(c, p, 0.5 * (p.normal + p.drag), 0.5, ways, dt), [(p, 0.5 * (p.normal + p.drag), 0.5)]
         )
+        self.damp(c, p, dt, old)
+
+    def damp(self, c, p, dt, then, share=1.0, placed=False):
+        """Of a contact that has existed for a share of the step; then: rates a step ago, and at that moment. One that
+        was placed moved before as it does now, and nothing is booked."""
+        if not c.springs:
+            return
+        rates, n = straining(c, p, dt)
+        p.rates = share * rates - p.slipped
+        p.rates_now = p.rates + (p.rates - (rates if placed else then.rates)) / 2
+        kick = SimpleNamespace(**{**vars(p), "springs": damping(c, p, p.rates_now)})
+        self.kick(dt, [(kick, 0.0, 0.5)], [(kick, 0.0, 0.5)])
+        if not placed:
+            both = then.rates_now + p.rates_now
+            self.lost["springDamping"] += c.springs * dt / 2 * powers(c, n, both, rates - p.slipped).sum()
+            for mode, energy in zip(MODES[1:], c.springs * dt / 2 * powers(c, n, both, p.slipped)):
+                self.lost[f"{mode}Dissipation"] += energy
 
     def within_limits(self, c, p, old, dt, time):
+        p.slipped = np.zeros((2, 3))
         if self.limit == "cut":
             return cut_at_limits(c, p, old, dt, time)
         return return_to_limits(c, p, old, dt, self.lost)
@@ -318,6 +375,7 @@ class Scene:
             c, p, SimpleNamespace(phi=0.0, zeta=np.zeros(3), xi=np.zeros(3)), dt, f if inside else 1.0
         )
         self.evaluate(c, p, p.v)
+        self.damp(c, p, dt, AT_REST, f if inside else 1.0, not inside)
         after, work = 0.5 * (p.normal + p.drag), p.held[0] - c.Fc * c.dc * U_AT_CONNECTION
         if not inside:
             return self.kick(dt, self.before(c, p, after, 0.5, ways, dt), [(p, after, 0.5)])
@@ -339,6 +397,11 @@ class Scene:
         for k, then, now in ((c.ks, old.zeta, zeta), (c.kr, old.xi, xi), (c.kt, old.phi, p.phi)):
             lost += k / 2 * np.dot(then, now) + k * (g - 0.5) * np.dot(now, now - then)
         self.lost["disconnection"] += lost
+        if c.springs:
+            rates, n = straining(c, p, dt)
+            p.springs = damping(c, p, old.rates_now)
+            self.kick(dt, [(p, 0.0, g - 0.5)])
+            self.lost["springDamping"] += g * c.springs * dt * powers(c, n, old.rates_now, rates).sum()
         self.lost["drag"] -= g * old.drag * opening
 
     def keep_bond(self, b, p, old, dt):
@@ -362,5 +425,7 @@ class Scene:
             before, after = [*before, (q, f * (q.normal + q.drag), f / 2)], [(q, 0.5 * (q.normal + q.drag), 0.5)]
             self.lost["drag"] += f * q.drag * closing
             lost -= sum(q.held) + f * q.drag * closing
+            q.slipped = np.zeros((2, 3))
+            self.damp(c, q, dt, AT_REST, f)
         unequal, work = self.kick(dt, before, after)
         self.lost["bondBreaking"] += lost - work + unequal

@@ -54,8 +54,8 @@ ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al.
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
 # What run.json has of a material, a contact and a bond, under `derived`.
-# Of stiffnesses, in the order of theory.pair_constants().
-FACTORS = ("slidingStiffnessFactor", "rollingStiffnessFactor")
+# What a run gives all its springs, in the order of theory.pair_constants(), and what is usual.
+OF_SPRINGS = {"slidingStiffnessFactor": 1.0, "rollingStiffnessFactor": 1.0, "springDamping": 0.0}
 OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
 OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
 OF_BOND = (
@@ -173,15 +173,15 @@ def _materials_as_written(file, _when):
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0, other=None):
     """Constants of a contact of two grains, where no YADE runs. A run takes them from the plugin; a test compares.
 
-    grains: with the attributes of Material, perhaps viscoelasticTime [s] and the FACTORS; other: likewise, of the
+    grains: with the attributes of Material, perhaps viscoelasticTime [s] and OF_SPRINGS; other: likewise, of the
     second grain where it is of another material; radii: of the two [m], both grainRadius if left out; neck: beta
     of sintered grains; linearDamping: k_n. Returns {name: value} by the plugin's names, SI; with a neck those of a
     bond, of two grains of grainRadius, as "bond".
     """
     both = [_material_of(of) for of in (grains, other or grains)]
     first, second = radii or (grains.grainRadius, grains.grainRadius)
-    factors = [getattr(grains, name, 1.0) for name in FACTORS]
-    found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, *factors))
+    springs = [getattr(grains, name, usual) for name, usual in OF_SPRINGS.items()]
+    found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, *springs))
     if neck:
         found["bond"] = _by_plugins_names(_bond_constants(both[0], grains.grainRadius, neck))
         found["bond"]["shrunkRadius"] = grains.grainRadius * theory.shrunk_radius(neck)

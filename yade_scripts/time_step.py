@@ -7,7 +7,7 @@ where grains are sintered."""
 import math
 from functools import partial
 
-from yade_scripts.materials import FACTORS, pair_constants
+from yade_scripts.materials import OF_SPRINGS, pair_constants
 from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
@@ -66,8 +66,11 @@ def step_limit(constants, filling):
     sliding_stiffness = constants["slidingStiffness"]
     lattice = maximum_filling(2 * constants["reducedRadius"], constants["equilibriumOverlap"])
     occupied = min(1.0, filling / lattice)
-    turning = 2 / math.sqrt(occupied * max(40 * sliding_stiffness, 10 * constants["rollingStiffness"]) / mass)
-    drag = 4 * 8 * (constants["dragPerContactRadius"] * contact_radius + constants["linearDrag"]) / mass
+    damping = constants["springDamping"]
+    turning = mass / (occupied * max(40 * sliding_stiffness, 10 * constants["rollingStiffness"]))
+    turning = 2 * (math.sqrt(damping**2 + turning) - damping)
+    drag = constants["dragPerContactRadius"] * contact_radius + constants["linearDrag"]
+    drag = 4 * 8 * (drag + damping * sliding_stiffness) / mass
     stiffness = 8 * (normal_stiffness + sliding_stiffness) / mass
     moving = 8 / (drag + math.sqrt(drag**2 + 16 * stiffness))
     steps = [turning, moving]
@@ -143,7 +146,10 @@ def _require_measured(parameters, *unmeasured):
     several = (
         (len(parameters.material_names) > 1, "two materials"),
         (not parameters.has_all_springs, "springs left out"),
-        *((getattr(parameters, name) != 1, f"{name} = {getattr(parameters, name):g}") for name in FACTORS),
+        *(
+            (getattr(parameters, name) != usual, f"{name} = {getattr(parameters, name):g}")
+            for name, usual in OF_SPRINGS.items()
+        ),
     )
     for wrong, what in (*several, *unmeasured):
         if wrong:

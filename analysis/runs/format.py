@@ -18,14 +18,14 @@ prints, and `sha256sum -c ended` checks it. Files that others put into the folde
 Format 1 had no `kind` in run.json (every run was a collision), no `boundaryWork` and `constraintWork` in the history
 and no `cell_size` in states. Format 2 has them. Format 3 has `externalWork` as well. Until then
 `ended` was empty; format 4 has the sums, and in lines that begin with # sums of archives' ends. Until format 5
-the status stood under `outcome`.
+the status stood under `outcome`. Format 7 has `springDamping` in the history.
 """
 
 from dataclasses import dataclass
 from math import isclose
 
-FORMAT = 6
-READABLE = (1, 2, 3, 4, 5, 6)
+FORMAT = 7
+READABLE = (1, 2, 3, 4, 5, 6, 7)
 SEALED = 4  # the first that has sums
 
 RUN_FILE, HISTORY_FILE, ENDED_FILE = "run.json", "history.npz", "ended"
@@ -68,6 +68,7 @@ CHANNEL_TABLE = (
     Channel("connection", LOST, "connection", "#8c4a9e"),
     Channel("disconnection", LOST, "disconnection", "#d094d8"),
     Channel("drag", LOST, "drag", "#7a5230"),
+    Channel("springDamping", LOST, "damping of springs", "#c79a6b", since=7),
     Channel("bondBreaking", LOST, "bond breaking", "#3b2a20"),
     Channel("boundaryWork", WORK, "work on the boundaries", "#4d4d4d", since=2),
     Channel("constraintWork", WORK, "work on constraints", "#b3b3b3", since=2),
@@ -193,7 +194,7 @@ _BY_UNIT = {
     "rad/s": "spin projectileSpin",
     "deg": "impactAngle",
     "m": "grainRadius criticalRolling smallest largest",
-    "s": "duration viscoelasticTime checkpointInterval",
+    "s": "duration viscoelasticTime springDamping checkpointInterval",
     "t0": "stepFraction impactStepFraction",
     "1/t0": "strainRate",
     "Pa": "young finalPressure",

@@ -61,6 +61,7 @@ class PairConstants:
     drag_per_contact_radius: float  # 2 T_vis E*/nu^2 [N s/m^2], A22 eq 7
     linear_drag: float  # k_n m0/t0 [N s/m], K13 eq 4
     time_unit: float  # t0 [s], K13 eq 2 with E*
+    spring_damping: float = 0.0  # c of the springs' damping [s]
 
 
 def time_unit(density, radius, reduced_young, surface_energy):
@@ -70,7 +71,14 @@ def time_unit(density, radius, reduced_young, surface_energy):
 
 
 def pair_constants(
-    material1, radius1, material2=None, radius2=None, linear_damping=0.0, sliding_factor=1.0, rolling_factor=1.0
+    material1,
+    radius1,
+    material2=None,
+    radius2=None,
+    linear_damping=0.0,
+    sliding_factor=1.0,
+    rolling_factor=1.0,
+    spring_damping=0.0,
 ):
     """Constants of the contact of two grains, or of a grain and a plane.
 
@@ -86,6 +94,8 @@ def pair_constants(
         k_s over 8 a0 G*; 2 as in S17's eqs 11 and 12.
     rolling_factor : float
         k_r over 4 F_c/R.
+    spring_damping : float [s]
+        c of the springs' damping.
 
     Returns
     -------
@@ -125,6 +135,7 @@ def pair_constants(
         drag_per_contact_radius=young * sum(m.viscous_coefficient for m in both),
         linear_drag=linear_damping * 2.0 * reduced_mass / t0,
         time_unit=t0,
+        spring_damping=spring_damping,
     )
 
 

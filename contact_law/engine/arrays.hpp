@@ -123,6 +123,15 @@ struct alignas(64) DragBlock {
 	double drag[lanes], overlap[lanes], velocity[3][lanes];
 };
 
+// What damped springs need of it (kernel/spring_damping.hpp): the vectors of a DampingMoment.
+struct alignas(64) DampingBlock {
+	double moment[4][3][lanes];
+};
+template <class Moment> ON_GPU inline auto vectorsOf(Moment& m)
+{
+	return std::array { &m.through.sliding, &m.through.turning, &m.now.sliding, &m.now.turning };
+}
+
 struct alignas(64) LaneForces {
 	double force[3][lanes], torque1[3][lanes], torque2[3][lanes];
 };
@@ -144,6 +153,8 @@ struct ForcePass : PairPass {
 	const ConstantsBlock* constants;      // null when all pairs are of one kind
 	const PairConstants<double>* uniform; // the constants then
 	DragBlock* drags;                     // null in scenes without drag
+	DampingBlock* dampings;               // null where springs are not damped
+	double springDamping;                 // c [s]
 	Dissipation* dissipated;              // what drag and slips took in this step is added here
 	long* slips;                          // and their number here
 	// contacts of a block (bits of `which`) that break or are pressed beyond the fit: history before the step, forces to be replaced

@@ -12,7 +12,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 10;
+	constexpr int formatNumber = 11;
 
 	// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
 	double sumOfBits(const std::vector<double>& numbers, std::size_t count)
@@ -96,7 +96,7 @@ namespace {
 	template <class Archive> void transfer(Archive& archive, Contact& c, const SharedState& shared)
 	{
 		transferNumbers(archive, c.i, c.j);
-		transferDoubles(archive, c.history, c.drag, c.overlap, c.velocity);
+		transferDoubles(archive, c.history, c.drag, c.overlap, c.velocity, c.damping);
 		if (Archive::restoring) c.constants = shared.constantsOf(c.i, c.j);
 	}
 	template <class Archive> void transfer(Archive& archive, Bond& b, const SharedState& shared)
@@ -191,7 +191,7 @@ template <class Archive> void PlaneContacts::transfer(Archive& archive)
 	transferSize(archive, contacts);
 	for (PlaneContact& c : contacts) {
 		transferNumbers(archive, c.grain, c.plane, c.side, c.before.touching, c.before.overlap, c.before.drag, c.before.twist);
-		transferDoubles(archive, c.n1, c.point, c.before.sliding, c.before.rolling, c.before.velocity);
+		transferDoubles(archive, c.n1, c.point, c.before.sliding, c.before.rolling, c.before.velocity, c.before.damping);
 		if (Archive::restoring) c.constants = s.constantsOnPlane(c.grain, c.plane);
 	}
 }
@@ -207,6 +207,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(shared.pairs.linearDamping, "linearDamping");
 	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
 	archive.same(shared.pairs.rollingStiffnessFactor, "rollingStiffnessFactor");
+	archive.same(shared.pairs.springDamping, "springDamping");
 	archive.same(shared.neck, "neck");
 	transferSize(archive, shared.necks);
 	for (double& neck : shared.necks)

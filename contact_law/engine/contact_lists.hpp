@@ -8,6 +8,12 @@ namespace contact_law {
 
 // With the grains in the other order: spin and normal both change sign.
 inline ContactHistory<double> swapped(const ContactHistory<double>& h) { return { { h.pointers.n2, h.pointers.n1 }, h.twist }; }
+inline DampingMoment<double> swapped(DampingMoment<double> m)
+{
+	for (Vec3<double>* v : vectorsOf(m))
+		*v = -*v;
+	return m;
+}
 
 inline ContactHistory<double> historyIn(const ContactBlock& b, int k)
 {
@@ -79,18 +85,21 @@ struct Contact { // one slot, taken out
 	PairConstants<double> constants;
 	double drag = 0, overlap = 0; // a step ago; these three only in scenes with drag
 	Vec3<double> velocity { 0, 0, 0 };
+	DampingMoment<double> damping {}; // in scenes with damped springs
 };
 
 class ContactList : public SlotList<ContactBlock> {
 public:
-	ContactList(bool uniform_, bool drag_, int dummy_)
+	ContactList(bool uniform_, unsigned mechanisms, int dummy_)
 	        : SlotList(dummy_)
 	        , uniform(uniform_)
-	        , hasDrag(drag_)
+	        , hasDrag(mechanisms & Drag)
+	        , isDamped(mechanisms & SpringDamping)
 	{
 	}
 	ConstantsBlock* constantsData() { return uniform ? nullptr : constants.data(); }
 	DragBlock* dragData() { return hasDrag ? drags.data() : nullptr; }
+	DampingBlock* dampingData() { return isDamped ? dampings.data() : nullptr; }
 	void setUnusedConstants(const PairConstants<double>& c) { unusedConstants = c; }
 
 	void append(const Contact& contact)
@@ -101,6 +110,7 @@ public:
 		writeHistory(slot, contact.history);
 		writeConstants(slot, contact.constants);
 		writeDrag(slot, contact.drag, contact.overlap, contact.velocity);
+		writeDamping(slot, contact.damping);
 	}
 	void appendUnused()
 	{
@@ -113,11 +123,13 @@ public:
 		writeHistory(slot, unusedHistory());
 		writeConstants(slot, unusedConstants);
 		writeDrag(slot, 0, unusedConstants.equilibriumOverlap, { 0, 0, 0 });
+		writeDamping(slot, {});
 	}
 	Contact get(int slot, const PairConstants<double>& pairConstants) const
 	{
 		Contact c { first(slot), second(slot), history(slot), pairConstants };
 		if (hasDrag) c.drag = drag(slot), c.overlap = overlap(slot), c.velocity = velocityBefore(slot);
+		c.damping = damping(slot);
 		return c;
 	}
 	double drag(int slot) const { return drags[slot / lanes].drag[slot % lanes]; }
@@ -141,6 +153,24 @@ public:
 		const int k = slot % lanes;
 		to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
 	}
+	DampingMoment<double> damping(int slot) const
+	{
+		DampingMoment<double> m;
+		if (!isDamped) return m;
+		const auto& from = dampings[slot / lanes].moment;
+		for (const int k : { 0, 1, 2, 3 })
+			*vectorsOf(m)[k] = { from[k][0][slot % lanes], from[k][1][slot % lanes], from[k][2][slot % lanes] };
+		return m;
+	}
+	void writeDamping(int slot, const DampingMoment<double>& m)
+	{
+		if (!isDamped) return;
+		auto& to = dampings[slot / lanes].moment;
+		for (const int k : { 0, 1, 2, 3 }) {
+			const Vec3<double>& v = *vectorsOf(m)[k];
+			to[k][0][slot % lanes] = v.x, to[k][1][slot % lanes] = v.y, to[k][2][slot % lanes] = v.z;
+		}
+	}
 	// Into the order of pairs, without unused slots; the next contact starts a block of its own.
 	void sort()
 	{
@@ -157,6 +187,7 @@ public:
 		blocks.clear();
 		constants.clear();
 		drags.clear();
+		dampings.clear();
 		slots = 0;
 	}
 
@@ -166,6 +197,7 @@ private:
 		blocks.emplace_back();
 		if (!uniform) constants.emplace_back();
 		if (hasDrag) drags.emplace_back();
+		if (isDamped) dampings.emplace_back();
 		for (int k = 0; k < lanes; ++k)
 			markUnused(int(blocks.size() - 1) * lanes + k);
 	}
@@ -174,6 +206,7 @@ private:
 		writeGrains(here, from.first(slot), from.second(slot));
 		writeHistory(here, from.history(slot));
 		if (hasDrag) writeDrag(here, from.drag(slot), from.overlap(slot), from.velocityBefore(slot));
+		writeDamping(here, from.damping(slot));
 		for (int k = 0; !uniform && k < keptCount; ++k)
 			constants[here / lanes].field[k][here % lanes] = from.constants[slot / lanes].field[k][slot % lanes];
 	}
@@ -184,8 +217,9 @@ private:
 	}
 	Aligned<ConstantsBlock> constants;
 	Aligned<DragBlock> drags;
+	Aligned<DampingBlock> dampings;
 	PairConstants<double> unusedConstants {};
-	bool uniform, hasDrag;
+	bool uniform, hasDrag, isDamped;
 };
 
 // ---- bonds ----

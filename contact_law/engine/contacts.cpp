@@ -22,6 +22,9 @@ ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slo
 	setMaterials(shared, c.i, c.j, n);
 	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
+	n.damping = c.damping;
+	if (shared.mechanisms & SpringDamping)
+		spring_damping::addForces(c.constants, n.geometry, c.history.pointers, c.damping.now, shared.pairs.springDamping, n.forces);
 	n.forces.keepOnly(shared.mechanisms);
 	return n;
 }
@@ -50,6 +53,7 @@ namespace {
 		n.material1 = shared.material[shared.kind[contact.grain]], n.material2 = shared.material[shared.planes[contact.plane].kind];
 		n.onPlane = true;
 		n.point = contact.point;
+		n.damping = contact.before.damping;
 		return n;
 	}
 
@@ -63,6 +67,7 @@ namespace {
 		s.constants.radius2 = c.constants.radius1;
 		std::swap(s.material1, s.material2);
 		s.history = swapped(c.history);
+		s.damping = swapped(c.damping);
 		s.geometry.normal = -c.geometry.normal;
 		s.forces.sliding = -c.forces.sliding;
 		s.forces.slidingDisplacement = -c.forces.slidingDisplacement;

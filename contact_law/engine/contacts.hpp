@@ -27,6 +27,7 @@ struct ContactNow {
 	double rest = 0;
 	Material material1 {}, material2 {};
 	bool onPlane = false;
+	DampingMoment<double> damping {};
 	Vec3<double> point { 0, 0, 0 }; // when it is, of the plane that belongs to the grain's pointer, from the plane's position [m]
 };
 ContactNow contactNow(const Dynamics&, const ContactList&, int slot);

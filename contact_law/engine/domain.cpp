@@ -41,6 +41,8 @@ ForcePass Domain::passFor(Ownership o)
 	ForcePass pass = passOver<ForcePass>(touching.contacts[o], o);
 	pass.uniform = &s.common;
 	pass.drags = touching.contacts[o].dragData();
+	pass.dampings = touching.contacts[o].dampingData();
+	pass.springDamping = s.pairs.springDamping;
 	pass.dissipated = ledger.sumsFor(o).dissipated;
 	pass.slips = ledger.sumsFor(o).slips;
 	pass.events = &Domain::eventsOf<ContactBlock>;

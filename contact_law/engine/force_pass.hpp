@@ -6,6 +6,7 @@
 #pragma once
 #include "../kernel/limits.hpp"
 #include "../kernel/numbers.hpp"
+#include "../kernel/spring_damping.hpp"
 #include "bond_pass.hpp"
 #include "neighbour_search.hpp"
 #include "pass_access.hpp"
@@ -16,8 +17,9 @@ namespace contact_law {
 struct alignas(64) BatchBuffer {
 	double spin1[3][lanes], spin2[3][lanes];
 	double normal[3][lanes], velocity[3][lanes], inverseDistance[lanes], overlap[lanes], normalForce[lanes], twistIncrement[lanes];
-	double drag[lanes];     // in scenes with drag
-	unsigned events, slips; // lanes (bits) that need scalar treatment; that slip
+	double drag[lanes];          // in scenes with drag
+	double slipped[2][3][lanes]; // SpringRates of slips, where springs are damped
+	unsigned events, slips;      // lanes (bits) that need scalar treatment; that slip
 	LaneForces out;
 };
 
@@ -118,6 +120,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 			}
 		}
 		if constexpr (bool(mechanisms & Drag)) keepDrag(pass.drags[index], buffer, events, at, lost);
+		if constexpr (bool(mechanisms & SpringDamping)) writeSlips({}, buffer, at);
 		buffer.slips |= slips << at;
 		keep(h, block, at);
 	}
@@ -145,6 +148,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		const Displacements<Pack> aStepAgo { SlidingSpring::displacement(c, old, inverseRoot(dot(then, then)) * then),
 			RollingSpring::displacement(c, old), Pack::load(before.twist + at) };
 		ContactHistory<Pack> h { { load(block.n1, at), load(block.n2, at) }, Pack::load(block.twist + at) };
+		const ContactHistory<Pack> trial = h;
 		returnToLimits<mechanisms>(c, g.normal, aStepAgo,
 		        { normalRate(g.normal, g.inverseDistance, velocity), load(buffer.spin1, at), load(buffer.spin2, at),
 		                Pack(pass.dt) },
@@ -152,8 +156,42 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		ContactForces<Pack> f = ContactForces<Pack>::none();
 		tangentialForces<mechanisms>(c, g, h, f);
 		storeForces(g, f, buffer, at);
+		if (mechanisms & SpringDamping && pass.dt > 0)
+			writeSlips(spring_damping::slipRates(c, g.normal, spring_damping::displacements(c, g.normal, trial),
+			                   spring_damping::displacements(c, g.normal, h), Pack(pass.dt)),
+			        buffer, at);
 		keep(h, block, at);
 		*pass.slips += __builtin_popcount(slipping);
+	}
+
+	static void writeSlips(const SpringRates<Pack>& slipped, BatchBuffer& buffer, int at)
+	{
+		store(slipped.sliding, buffer.slipped[0], at), store(slipped.turning, buffer.slipped[1], at);
+	}
+
+	// Behind slips: the springs' damping. Events do it for themselves, and keep the step before, which they need.
+	static void sweepDamping(
+	        const ForcePass& pass, const PairConstants<Pack>& c, int index, BatchBuffer& buffer, int at, DissipationOf<Pack>& lost)
+	{
+		auto& kept = pass.dampings[index].moment;
+		const Pack dt(pass.dt), time(pass.springDamping);
+		const typename Pack::Mask plain = maskOf(~buffer.events >> at);
+		const ContactGeometry<Pack> g { load(buffer.normal, at), Pack::load(buffer.inverseDistance + at), Pack(0.) };
+		const DampingMoment<Pack> before { { load(kept[0], at), load(kept[1], at) }, { load(kept[2], at), load(kept[3], at) } };
+		const SpringRates<Pack> slipped { load(buffer.slipped[0], at), load(buffer.slipped[1], at) };
+		const Pointers<Pack> p {};
+		const auto way =
+		        spring_damping::motion(c, g, p, load(buffer.velocity, at), load(buffer.spin1, at), load(buffer.spin2, at), dt);
+		const DampingMoment<Pack> now = spring_damping::now(way.rates - slipped, before.through);
+		spring_damping::book(c, way, before.now, now.now, slipped, time, dt, plain, lost);
+		ContactForces<Pack> f = ContactForces<Pack>::none();
+		spring_damping::addForces(c, g, p, now.now, time, f);
+		store(load(buffer.out.force, at) + f.sliding, buffer.out.force, at);
+		store(load(buffer.out.torque1, at) + f.torque1, buffer.out.torque1, at);
+		store(load(buffer.out.torque2, at) + f.torque2, buffer.out.torque2, at);
+		const auto to = vectorsOf(now), old = vectorsOf(before);
+		for (const int k : { 0, 1, 2, 3 })
+			store(choose<Pack>(plain, *to[k], *old[k]), kept[k], at);
 	}
 
 	// Events keep the step before, which they need.
@@ -211,6 +249,9 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 				if (__builtin_expect(buffers[b].slips != 0, 0))
 					for (int at = 0; at < lanes; at += width)
 						sweepSlips<mechanisms>(pass, c(b, at), first + b, buffers[b], before[b], at, lost);
+				if constexpr (bool(mechanisms & SpringDamping))
+					for (int at = 0; at < lanes; at += width)
+						sweepDamping(pass, c(b, at), first + b, buffers[b], at, lost);
 				if (__builtin_expect(buffers[b].events != 0, 0))
 					pass.events(pass.owner, first + b, buffers[b].events, before[b], buffers[b].out);
 			}
@@ -269,6 +310,7 @@ template <class Pack> struct Passes : PassAccess<Pack> {
 		add<mechanisms, false>(set);
 		add<mechanisms, true>(set);
 		if constexpr (mechanisms < Everything) add<mechanisms + 1>(set);
+		if constexpr (mechanisms == Everything) add<Damped>(set); // mechanismSets
 	}
 };
 

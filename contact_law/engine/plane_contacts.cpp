@@ -71,7 +71,7 @@ bool PlaneContacts::step(PlaneContact& c)
 	c.n1 = history.pointers.n1;
 	c.point = history.pointers.anchor + foot;
 	c.before = { r.touching, r.geometry.overlap, r.now.drag, r.now.slidingDisplacement, r.now.rollingDisplacement, history.twist,
-		m.velocity };
+		m.velocity, r.damping };
 	return r.touching;
 }
 
@@ -100,7 +100,9 @@ void PlaneContacts::stepAll()
 		const PlanePass pass { s.grains.data(), s.planes.data(), positions.data(), &contacts[first], count, s.dt,
 			s.limit == LimitRule::Cut, &ledger.lost, &slips };
 		LaneForces out;
-		const unsigned left = s.displaced.empty() ? s.passes->planeForces[s.mechanisms](pass, out) : ~0u;
+		// a pass for damped springs isn't worth its compiling
+		const unsigned left =
+		        s.displaced.empty() && !(s.mechanisms & SpringDamping) ? s.passes->planeForces[s.mechanisms](pass, out) : ~0u;
 		for (int k = 0; k < count; ++k) {
 			PlaneContact& c = contacts[first + k];
 			if (!(left >> k & 1)) {
@@ -153,8 +155,13 @@ void PlaneContacts::findNear()
 
 void PlaneContacts::takeVelocities()
 {
-	for (PlaneContact& c : contacts)
-		c.before.velocity = velocityOf(s.grains[c.grain]) - s.planes[c.plane].velocity;
+	for (PlaneContact& c : contacts) {
+		const Grain& g = s.grains[c.grain];
+		c.before.velocity = velocityOf(g) - s.planes[c.plane].velocity;
+		c.before.damping.through = spring_damping::motion(
+		        c.constants, geometryOf(c), PlanePointers<double> {}, c.before.velocity, spinOf(g), { 0, 0, 0 }, 0.)
+		                                   .rates;
+	}
 }
 
 ContactGeometry<double> PlaneContacts::geometryOf(const PlaneContact& c) const
@@ -168,6 +175,8 @@ ContactForces<double> PlaneContacts::forcesOf(const PlaneContact& c) const
 	const PlaneHistory<double> history { { { c.n1, g.normal }, c.point - footOf(c) }, c.before.twist };
 	ContactForces<double> f = contactForces<AllSprings>(c.constants, g, history, c.before.velocity);
 	f.drag = c.before.drag;
+	if (s.mechanisms & SpringDamping)
+		spring_damping::addForces(c.constants, g, history.pointers, c.before.damping.now, s.pairs.springDamping, f);
 	f.keepOnly(s.mechanisms);
 	return f;
 }

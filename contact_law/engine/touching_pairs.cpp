@@ -10,8 +10,8 @@ namespace {
 }
 
 TouchingPairs::TouchingPairs(SharedState& shared, int begin_, int end_, int dummy_)
-        : contacts { { shared.uniform, shared.hasDrag(), dummy_ }, { shared.uniform, shared.hasDrag(), dummy_ },
-	        { shared.uniform, shared.hasDrag(), dummy_ } }
+        : contacts { { shared.uniform, shared.mechanisms, dummy_ }, { shared.uniform, shared.mechanisms, dummy_ },
+	        { shared.uniform, shared.mechanisms, dummy_ } }
         , bonds { { shared.uniformBonds(), dummy_ }, { shared.uniformBonds(), dummy_ }, { shared.uniformBonds(), dummy_ } }
         , s(shared)
         , begin(begin_)
@@ -85,7 +85,7 @@ void TouchingPairs::place(const Contents& all, const std::vector<int>& to)
 	for (const Ownership o : counted) {
 		place(all.contacts[o], to, contacts, [this](const ContactList& list, int slot, int i, int j) {
 			Contact c = list.get(slot, s.constantsOf(std::min(i, j), std::max(i, j)));
-			if (i > j) c.velocity = -c.velocity;
+			if (i > j) c.velocity = -c.velocity, c.damping = swapped(c.damping);
 			return c;
 		});
 		place(all.bonds[o], to, bonds, [this](const BondList& list, int slot, int i, int j) {
@@ -129,7 +129,16 @@ void TouchingPairs::takeVelocities(const PeriodicCell& cell)
 		for (int slot = 0; slot < list.size(); ++slot) {
 			if (!list.isUsed(slot)) continue;
 			Image image;
-			list.writeVelocity(slot, s.motionOf(cell, list.first(slot), list.second(slot), image).velocity);
+			const int i = list.first(slot), j = list.second(slot);
+			const ContactMotion m = s.motionOf(cell, i, j, image);
+			list.writeVelocity(slot, m.velocity);
+			if (!(s.mechanisms & SpringDamping)) continue;
+			const PairConstants<double> c = s.constantsOf(i, j);
+			DampingMoment<double> damping = list.damping(slot);
+			damping.through = spring_damping::motion(c, geometryOf(m.separation, c.radius1 + c.radius2),
+			        list.history(slot).pointers, m.velocity, m.spin1, m.spin2, 0.)
+			                          .rates;
+			list.writeDamping(slot, damping);
 		}
 }
 
@@ -229,6 +238,7 @@ void ContactEvents::ofSlot(Ownership o, int slot, const ContactBlock& old, LaneF
 	if (s.hasDrag()) {
 		before.velocity = list.velocityBefore(slot);
 		before.drag = list.drag(slot);
+		before.damping = list.damping(slot);
 	}
 
 	turnPointers(h, m);
@@ -238,6 +248,7 @@ void ContactEvents::ofSlot(Ownership o, int slot, const ContactBlock& old, LaneF
 		write(r, out, k);
 		list.writeHistory(slot, h);
 		list.writeDrag(slot, r.now.drag, r.geometry.overlap, m.velocity);
+		list.writeDamping(slot, r.damping);
 		return;
 	}
 	// the pass adds by the slot's indices, which are those of the dummies now: its kicks still go to its grains
@@ -272,7 +283,7 @@ void ContactEvents::ofSlot(Ownership o, int slot, const BondBlock& old, LaneForc
 	list.markUnused(slot);
 	touching.noteChange();
 	if (r.touching)
-		touching.contacts[o].append({ i, j, h, constants, r.now.drag, r.geometry.overlap, m.velocity });
+		touching.contacts[o].append({ i, j, h, constants, r.now.drag, r.geometry.overlap, m.velocity, r.damping });
 	else
 		lists.part(i, j);
 }
@@ -301,6 +312,7 @@ bool ContactEvents::formContact(const NeighbourPair& pair)
 	c.drag = r.now.drag;
 	c.overlap = r.geometry.overlap;
 	c.velocity = m.velocity;
+	c.damping = r.damping;
 	ledger.counts.formed += isCounted(o);
 	touching.noteChange();
 	book(i, j, r, m, image, o);

@@ -212,6 +212,7 @@ namespace bonds {
 		const bool torn = m.dt == 0 || isTorn(b, m, before, bondGeometry, bond);
 		double released = torn ? held(b, before) : heldAfterHalfKick(b, before, bondGeometry, bond, h.twist);
 		events::Kicks ahead, after;
+		double existed = 0; // of the step, the new contact
 		if (!torn) ahead.add(breaking.fraction - 0.5, breaking.fraction - 0.5, bondGeometry, bond);
 
 		r.geometry = geometryOf(m.separation, c.radius1 + c.radius2);
@@ -219,6 +220,7 @@ namespace bonds {
 		if (r.touching) {
 			const double closing = bondGeometry.overlap - before.overlap, overlapBefore = r.geometry.overlap - closing;
 			const double since = std::min(1 - breaking.fraction, overlapBefore < 0 ? r.geometry.overlap / closing : 1.);
+			existed = since;
 			h = events::formedHistory(m, since * m.dt);
 			r.pointersMoved = true;
 			r.now = contactForces<mechanisms>(c, r.geometry, h, m.velocity);
@@ -237,6 +239,8 @@ namespace bonds {
 		r.force = ahead.force + after.force;
 		r.torque1 = ahead.torque1 + after.torque1;
 		r.torque2 = ahead.torque2 + after.torque2;
+		if constexpr (bool(mechanisms & SpringDamping))
+			if (r.touching) spring_damping::add(c, m, {}, h, existed, false, r);
 		return result;
 	}
 }

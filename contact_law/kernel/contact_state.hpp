@@ -12,17 +12,23 @@ enum Mechanism : unsigned {
 	Twisting = 4,
 	Drag = 8,
 	AllSprings = Sliding | Rolling | Twisting,
-	Everything = AllSprings | Drag
+	SpringDamping = 16,
+	Everything = AllSprings | Drag, // but for damped springs
+	Damped = Everything | SpringDamping
 };
-constexpr int mechanismSets = Everything + 1; // combinations of mechanisms
-// The instances of a function template for all of them: for callers that know theirs at run time only.
+constexpr int mechanismSets = Damped + 1; // combinations of mechanisms
+/* The instances of a function template for all of them: for callers that know theirs at run time only. Of damped springs there is one, since
+ * each costs minutes of compiling: all of them are there, and drag too (its coefficients may be 0). */
 #define CONTACT_LAW_ALL_MECHANISMS(f)                                                                                                      \
 	{                                                                                                                                  \
-		f<0>, f<1>, f<2>, f<3>, f<4>, f<5>, f<6>, f<7>, f<8>, f<9>, f<10>, f<11>, f<12>, f<13>, f<14>, f<15>                       \
+		f<0>, f<1>, f<2>, f<3>, f<4>, f<5>, f<6>, f<7>, f<8>, f<9>, f<10>, f<11>, f<12>, f<13>, f<14>, f<15>, nullptr, nullptr,    \
+		        nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,        \
+		        nullptr, f<Damped>                                                                                                 \
 	}
 
-constexpr unsigned mechanismsOf(bool sliding, bool rolling, bool twisting, bool drag)
+constexpr unsigned mechanismsOf(bool sliding, bool rolling, bool twisting, bool drag, bool damped)
 {
+	if (damped) return Damped;
 	return (sliding ? unsigned(Sliding) : 0u) | (rolling ? unsigned(Rolling) : 0u) | (twisting ? unsigned(Twisting) : 0u)
 	        | (drag ? unsigned(Drag) : 0u);
 }
@@ -86,6 +92,15 @@ template <class T> struct DragMoment {
 	T force, overlap;
 };
 
+// What strains springs: dzeta/dt [m/s]; how fast grains turn against each other [rad/s], which rolls across the normal and twists along it.
+template <class T> struct SpringRates {
+	Vec3<T> sliding { T(0.), T(0.), T(0.) }, turning { T(0.), T(0.), T(0.) };
+};
+// Of damped springs: their rates through the step to this moment, and at it.
+template <class T> struct DampingMoment {
+	SpringRates<T> through, now;
+};
+
 struct ContactMotion {
 	Vec3<double> separation;   // x1 - x2 now
 	Vec3<double> velocity;     // v1 - v2 through the step, of their images nearest to each other
@@ -104,6 +119,7 @@ struct ContactBefore {
 	Vec3<double> sliding { 0, 0, 0 }, rolling { 0, 0, 0 }; // displacements
 	double twist = 0;
 	Vec3<double> velocity { 0, 0, 0 }; // v1 - v2 through the step before this one
+	DampingMoment<double> damping {};
 };
 
 struct ContactStepResult {
@@ -116,6 +132,15 @@ struct ContactStepResult {
 	ContactForces<double> now {}; // the forces at this instant
 	StoredEnergy<double> stored { 0, 0, 0, 0 };
 	Dissipation dissipated;
+	SpringRates<double> slipped {}; // what slips took of the motion, where springs are damped
+	DampingMoment<double> damping {};
+
+	ON_GPU void addKicks(const Vec3<double>& f, const Vec3<double>& t1, const Vec3<double>& t2, double before) // of them, a fraction
+	{
+		force = force + f, torque1 = torque1 + t1, torque2 = torque2 + t2;
+		forceBefore = forceBefore + before * f, torqueBefore1 = torqueBefore1 + before * t1,
+		torqueBefore2 = torqueBefore2 + before * t2;
+	}
 
 	// Of a contact that touched: whether it slipped or broke.
 	ON_GPU bool isEvent() const { return pointersMoved || !touching || dissipated.twisting != 0; }

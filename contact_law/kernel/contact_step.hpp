@@ -9,6 +9,7 @@
 #include "cut.hpp"
 #include "events.hpp"
 #include "limits.hpp"
+#include "spring_damping.hpp"
 
 namespace contact_law {
 
@@ -35,11 +36,18 @@ inline events::Kicks evaluateNow(const PairConstants<double>& c, LimitRule limit
 {
 	const ContactGeometry<double>& g = r.geometry;
 	cut::Result cuts;
-	if (limit == LimitRule::Cut)
+	if (limit == LimitRule::Cut) // a new spring is strained from the cut on: the motion's rate is the springs'
 		cuts = cutAtLimits(mechanisms, c, g, m, before, springsBefore, history, r.dissipated);
-	else
+	else {
+		Displacements<double> trial {};
+		if constexpr (bool(mechanisms & SpringDamping)) trial = spring_damping::displacements(c, g.normal, history);
 		cuts.pointersMoved = returnToLimits<mechanisms>(c, g.normal, { before.sliding, before.rolling, before.twist },
 		        { normalRate(g.normal, g.inverseDistance, m.velocity), m.spin1, m.spin2, m.dt }, history, true, r.dissipated);
+		if constexpr (bool(mechanisms & SpringDamping))
+			if (m.dt > 0)
+				r.slipped = spring_damping::slipRates(
+				        c, g.normal, trial, spring_damping::displacements(c, g.normal, history), m.dt);
+	}
 	r.pointersMoved = cuts.pointersMoved || !before.touching;
 	r.touching = true;
 	r.now = contactForces<mechanisms>(c, g, history, velocity);
@@ -58,6 +66,7 @@ inline ContactStepResult keptContact(const PairConstants<double>& c, LimitRule l
 	        evaluateNow<mechanisms>(c, limit, m, before, drag::velocityNow(m.velocity, before.velocity), 0.5, history, r);
 	bookDrag<double>({ before.drag, before.overlap }, { r.now.drag, g.overlap }, true, r.dissipated);
 	setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, ofCuts, r);
+	if constexpr (bool(mechanisms & SpringDamping)) spring_damping::add(c, m, before, history, 1, false, r);
 	return r;
 }
 
@@ -75,6 +84,7 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 	const events::Kicks ofCuts = evaluateNow<mechanisms>(c, limit, m, before, m.velocity, formed.inStep ? f / 2 : 0.5, history, r);
 	if (!formed.inStep) {
 		setKicks(m, 0.5 * (r.now.normalForce + r.now.drag), 0.5, ofCuts, r);
+		if constexpr (bool(mechanisms & SpringDamping)) spring_damping::add(c, m, before, history, 1, true, r);
 		return r;
 	}
 	const double closing = g.overlap - formed.overlapBefore;
@@ -83,6 +93,7 @@ inline ContactStepResult newContact(const PairConstants<double>& c, LimitRule li
 	r.dissipated.connection = normal::connection(c, impulseBefore, impulseAfter, m.inverseMass);
 	bookDragFraction(f, { r.now.drag, g.overlap }, closing, r.dissipated);
 	setKicks(m, normalBefore, f / 2, ofCuts, r);
+	if constexpr (bool(mechanisms & SpringDamping)) spring_damping::add(c, m, before, history, f, false, r);
 	return r;
 }
 
@@ -112,6 +123,7 @@ inline ContactStepResult brokenContact(const PairConstants<double>& c, const Con
 	r.force = push * g.normal + (fraction - 0.5) * f.sliding;
 	r.torque1 = (fraction - 0.5) * f.torque1;
 	r.torque2 = (fraction - 0.5) * f.torque2;
+	if constexpr (bool(mechanisms & SpringDamping)) spring_damping::addUntilBreaking(c, m, before, h, fraction, r, g);
 	r.forceBefore = r.force;
 	r.torqueBefore1 = r.torque1;
 	r.torqueBefore2 = r.torque2;

@@ -20,13 +20,13 @@ TABLE_ON_GPU constexpr T StoredEnergy<T>::*storedMembers[] = { &StoredEnergy<T>:
 template <class T> struct DissipationOf {
 	T sliding = T(0.), rolling = T(0.), twisting = T(0.);
 	T connection = T(0.), disconnection = T(0.); // contacts that formed, and broke
-	T drag = T(0.);
+	T drag = T(0.), springDamping = T(0.);
 	T bondStretching = T(0.), bondSliding = T(0.), bondRolling = T(0.), bondTwisting = T(0.); // sintered bonds that broke, by mode
 };
 template <class T>
 TABLE_ON_GPU constexpr T DissipationOf<T>::*lostMembers[] = { &DissipationOf<T>::sliding, &DissipationOf<T>::rolling,
 	&DissipationOf<T>::twisting, &DissipationOf<T>::connection, &DissipationOf<T>::disconnection, &DissipationOf<T>::drag,
-	&DissipationOf<T>::bondStretching, &DissipationOf<T>::bondSliding, &DissipationOf<T>::bondRolling,
+	&DissipationOf<T>::springDamping, &DissipationOf<T>::bondStretching, &DissipationOf<T>::bondSliding, &DissipationOf<T>::bondRolling,
 	&DissipationOf<T>::bondTwisting };
 using Dissipation = DissipationOf<double>;
 static_assert(sizeof(StoredEnergy<double>) == std::size(storedMembers<double>) * sizeof(double)
@@ -78,6 +78,7 @@ constexpr Channel channels[] = {
 	{ "connection", ChannelKind::Lost, [](const Energies& e) { return e.dissipated.connection; } },
 	{ "disconnection", ChannelKind::Lost, [](const Energies& e) { return e.dissipated.disconnection; } },
 	{ "drag", ChannelKind::Lost, [](const Energies& e) { return e.dissipated.drag; } },
+	{ "springDamping", ChannelKind::Lost, [](const Energies& e) { return e.dissipated.springDamping; } },
 	{ "bondBreaking", ChannelKind::Lost,
 	        [](const Energies& e) {
 	                const Dissipation& d = e.dissipated;

@@ -24,6 +24,7 @@ struct PairOptions {
 	double linearDamping = 0;          // k_n, K13 (4)
 	double slidingStiffnessFactor = 1; // k_s over A22's (18); 2: of S17's (11) and (12)
 	double rollingStiffnessFactor = 1; // k_r over A22's (14)
+	double springDamping = 0;          // c of the springs' damping [s] (spring_damping.hpp)
 };
 
 /* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
@@ -48,7 +49,8 @@ struct PairOptions {
 	_(criticalTwisting, false, "phi_crit [rad].")                                                                                      \
 	_(dragPerContactRadius, true, "2 T_vis E*/nu^2 [N s/m^2].")                                                                        \
 	_(linearDrag, true, "k_n m0/t0 [N s/m].")                                                                                          \
-	_(timeUnit, false, "t0 [s].")
+	_(timeUnit, false, "t0 [s].")                                                                                                      \
+	_(springDamping, false, "c [s]: beside k D springs have k c dD/dt.")
 
 template <class T> struct PairConstants {
 #define CONTACT_LAW_MEMBER(name, ...) T name;
@@ -116,17 +118,22 @@ inline PairConstants<double> derivePair(
 	// K13 (2) with E* for E (see MODEL.md)
 	c.timeUnit = 0.95 * std::sqrt(density) * std::pow(radius, 7. / 6.) / (cubeRoot(c.reducedYoung) * std::pow(gamma, 1. / 6.));
 	c.linearDrag = options.linearDamping * mass / c.timeUnit; // K13 (4)
+	c.springDamping = options.springDamping;
 	c.complete();
 	return c;
 }
 
 /* Steps from here on are unstable for such a pair, in whatever packing [s] (MODEL.md, "Step limits"): half a time unit, at which collisions were seen to blow
- * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated. NaN where the time unit is. lightness: mass of the grains (or moment of
+ * up, or m* over the drag coefficient, where drag overshoots with its velocity extrapolated; where springs are damped, that of the pair's fastest vibration by them. NaN where the time unit is. lightness: mass of the grains (or moment of
  * inertia) over that of solid spheres of their materials, where it is less. */
 inline double unstableStep(const PairConstants<double>& c, double lightness = 1)
 {
 	const double drag = c.dragPerContactRadius * c.equilibriumContactRadius + c.linearDrag;
-	return std::min(0.5 * c.timeUnit * std::sqrt(lightness), drag > 0 ? lightness * c.reducedMass / drag : 1e300);
+	const double undamped = std::min(0.5 * c.timeUnit * std::sqrt(lightness), drag > 0 ? lightness * c.reducedMass / drag : 1e300);
+	const double time = c.springDamping, ofTwisting = c.twistingStiffness / (c.reducedRadius * c.reducedRadius);
+	if (time == 0) return undamped;
+	const double stiffness = std::max({ 3.5 * c.slidingStiffness, 2.5 * c.rollingStiffness, 2.5 * ofTwisting });
+	return std::min(undamped, 2 * (std::sqrt(time * time + lightness * c.reducedMass / stiffness) - time));
 }
 inline double massByInertia(double inertia, double radius) { return inertia / (0.4 * radius * radius); } // of a solid sphere
 inline double lightness(double mass, double ofSolid)

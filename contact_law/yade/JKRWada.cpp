@@ -63,6 +63,7 @@ void requireInRange(const contact_law::PairOptions& options, Real neck)
 	requireNotNegative("linearDamping", options.linearDamping, "");
 	requirePositive("slidingStiffnessFactor", options.slidingStiffnessFactor, "");
 	requirePositive("rollingStiffnessFactor", options.rollingStiffnessFactor, "");
+	requireNotNegative("springDamping", options.springDamping, " [s]");
 	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
 }
 
@@ -145,7 +146,7 @@ void JKRWadaPhys::takeConstantsToCome()
 }
 
 void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const contact_law::ContactForces<double>& f, Real twist_,
-        const Vector3r& velocity_, bool ofPlane)
+        const Vector3r& velocity_, const contact_law::DampingMoment<double>& damping, bool ofPlane)
 {
 	const Real sign = ofPlane ? 1 : -1; // of the force on YADE's second body
 	touching = true;
@@ -155,13 +156,16 @@ void JKRWadaPhys::set(const contact_law::ContactGeometry<double>& g, const conta
 	twist = twist_;
 	dragForce = f.drag;
 	velocity = velocity_;
+	slidingRate = fromKernel(damping.through.sliding), turningRate = fromKernel(damping.through.turning);
+	slidingRateNow = fromKernel(damping.now.sliding), turningRateNow = fromKernel(damping.now.turning);
 	normalForce = sign * (f.normalForce + f.drag) * fromKernel(g.normal);
 	shearForce = sign * fromKernel(f.sliding);
 }
 
 contact_law::ContactBefore JKRWadaPhys::before() const
 {
-	return { touching, overlap, dragForce, toKernel(slidingDisplacement), toKernel(rollingDisplacement), twist, toKernel(velocity) };
+	return { touching, overlap, dragForce, toKernel(slidingDisplacement), toKernel(rollingDisplacement), twist, toKernel(velocity),
+		{ { toKernel(slidingRate), toKernel(turningRate) }, { toKernel(slidingRateNow), toKernel(turningRateNow) } } };
 }
 
 Real JKRWadaPhys::storedEnergy() const
@@ -335,7 +339,7 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::postLoad(Law2_ScGeom_JKRWadaPhys_JKRWada&)
 
 unsigned Law2_ScGeom_JKRWadaPhys_JKRWada::mechanismsOf(const PairConstants<double>& c) const
 {
-	return contact_law::mechanismsOf(sliding, rolling, twisting, c.dragPerContactRadius > 0 || c.linearDrag > 0);
+	return contact_law::mechanismsOf(sliding, rolling, twisting, c.dragPerContactRadius > 0 || c.linearDrag > 0, c.springDamping > 0);
 }
 
 bool Law2_ScGeom_JKRWadaPhys_JKRWada::stepIsBelow(Real unstable) const
@@ -371,6 +375,10 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::go(shared_ptr<IGeom>& geometry, shared_ptr
 	        reduced(turning(state1, constants.radius1), turning(state2, ofPlane ? constants.radius1 : constants.radius2));
 	const Real light = contact_law::lightness(std::min(mass, ofTurning), constants.reducedMass);
 	if (!stepIsBelow(contact_law::unstableStep(constants, light))) return true;
+	if (constants.springDamping > 0 && !(sliding && rolling && twisting)) {
+		refuseInStep(*scene, std::string("Law2_ScGeom_JKRWadaPhys_JKRWada: ") + dampedWithoutSprings);
+		return true;
+	}
 	if (ofPlane) return goPlane(*YADE_CAST<ScGeom*>(geometry.get()), phys, constants, *interaction);
 
 	Vector3r separation = state1.pos - state2.pos, velocity = state1.vel - state2.vel, imageVelocity = Vector3r::Zero();
@@ -483,7 +491,7 @@ bool Law2_ScGeom_JKRWadaPhys_JKRWada::finish(const Interaction& interaction, JKR
 	}
 	phys.touching = r.touching;
 	if (!r.touching) return false;
-	phys.set(r.geometry, r.now, twist, fromKernel(motion.velocity), ofPlane);
+	phys.set(r.geometry, r.now, twist, fromKernel(motion.velocity), r.damping, ofPlane);
 	phys.current = false;
 	phys.springs = int(mechanisms);
 	return true;
@@ -513,7 +521,7 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::changeConstants(JKRWadaPhys& phys, Contact
         Real twist, ContactStepResult& r, const Step& step)
 {
 	const contact_law::ContactBefore now { true, r.geometry.overlap, r.now.drag, r.now.slidingDisplacement, r.now.rollingDisplacement,
-		twist, before.velocity };
+		twist, before.velocity, { before.damping.through, r.damping.now } };
 	motion.dt = 0;
 	phys.takeConstantsToCome();
 	const PairConstants<double> constants = phys.constants->forKernel();
@@ -529,7 +537,7 @@ void Law2_ScGeom_JKRWadaPhys_JKRWada::changeConstants(JKRWadaPhys& phys, Contact
 		channels.add(*scene, energies);
 	}
 	r.touching = changed.touching, r.geometry = changed.geometry, r.now = changed.now;
-	r.stored = changed.stored, r.dissipated += changed.dissipated;
+	r.stored = changed.stored, r.dissipated += changed.dissipated, r.damping.now = changed.damping.now;
 	r.pointersMoved = r.pointersMoved || changed.pointersMoved;
 }
 

@@ -111,7 +111,7 @@ public:
 	void takeConstantsToCome();
 	// All but the pointers. velocity: of the kernel's grain 1 past grain 2 through the last step. Against a plane the grain is body 2.
 	void set(const contact_law::ContactGeometry<double>&, const contact_law::ContactForces<double>&, Real twist,
-	        const Vector3r& velocity, bool ofPlane = false);
+	        const Vector3r& velocity, const contact_law::DampingMoment<double>&, bool ofPlane = false);
 	contact_law::ContactBefore before() const; // a step ago, for the next one
 	Real storedEnergy() const;                 // [J]
 	Real energyWhenTorn() const;               // that it gives up where a script tears the grains apart [J]
@@ -143,6 +143,12 @@ public:
 		((Real, dragForce, 0, Attr::readonly, "Viscous part of the normal force, positive when the grains approach [N]."))
 		((Vector3r, velocity, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Velocity of body 1 past body 2 through the last "
 			"step [m/s]."))
+		((Vector3r, slidingRate, Vector3r::Zero(), Attr::readonly|Attr::hidden, "Of damped springs: how fast zeta grew through "
+			"the last step [m/s]."))
+		((Vector3r, turningRate, Vector3r::Zero(), Attr::readonly|Attr::hidden, "How fast the grains turned against each other, "
+			"but for slips [rad/s]."))
+		((Vector3r, slidingRateNow, Vector3r::Zero(), Attr::readonly|Attr::hidden, "The first at this moment."))
+		((Vector3r, turningRateNow, Vector3r::Zero(), Attr::readonly|Attr::hidden, "The second at this moment."))
 		((int, springs, int(contact_law::AllSprings), Attr::readonly|Attr::hidden, "Its springs in the last step (bits of "
 			"Mechanism, kernel/contact_state.hpp)."))
 		((bool, current, false, Attr::readonly|Attr::hidden, "Whether all this is of the moment that the bodies' positions are of "
@@ -167,7 +173,10 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
-	contact_law::PairOptions options() const { return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor }; }
+	contact_law::PairOptions options() const
+	{
+		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
+	}
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 	void requireSameMaterials(const JKRWadaPhys&, const JKRMat& material1, const JKRMat& material2, const Interaction&) const;
 
@@ -194,6 +203,8 @@ public:
 		((Real, slidingStiffnessFactor, 1, Attr::triggerPostLoad, "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); "
 			"2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
 		((Real, rollingStiffnessFactor, 1, Attr::triggerPostLoad, "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
+		((Real, springDamping, 0, Attr::triggerPostLoad, "Damps sliding, rolling and twisting springs of ordinary contacts: c of "
+			"the force k c dD/dt beside k D [s]; 0: they ring on."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 "
 			"r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at "

@@ -28,7 +28,10 @@ class JKRWadaEngine : public GlobalEngine {
 	Settings settings() const;
 	void requireSameSettings() const;
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
-	contact_law::PairOptions pairOptions() const { return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor }; }
+	contact_law::PairOptions pairOptions() const
+	{
+		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
+	}
 	int threadsOrYades() const;
 	void requireInRange() const;
 	void requireOwnScene() const;
@@ -101,6 +104,8 @@ public:
 		((Real, slidingStiffnessFactor, 1, , "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of "
 			"Sirono & Ueno (2017) as printed."))
 		((Real, rollingStiffnessFactor, 1, , "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
+		((Real, springDamping, 0, , "Damps sliding, rolling and twisting springs of ordinary contacts: c of the force k c dD/dt "
+			"beside k D [s]; 0: they ring on."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that "
 			"touch at the start are bonded, all others as shrunk as they "
 			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`). After sinter(): the largest neck of any bond."))

@@ -39,8 +39,9 @@ JKRWadaEngine::Settings JKRWadaEngine::settings() const
 {
 	return { { "domains", text(domains) }, { "instructions", text(instructions) }, { "linearDamping", text(linearDamping) },
 		{ "slidingStiffnessFactor", text(slidingStiffnessFactor) }, { "rollingStiffnessFactor", text(rollingStiffnessFactor) },
-		{ "neck", text(neck) }, { "sliding", text(sliding) }, { "rolling", text(rolling) }, { "twisting", text(twisting) },
-		{ "limit", text(limit) }, { "orientations", text(orientations) } };
+		{ "springDamping", text(springDamping) }, { "neck", text(neck) }, { "sliding", text(sliding) },
+		{ "rolling", text(rolling) }, { "twisting", text(twisting) }, { "limit", text(limit) },
+		{ "orientations", text(orientations) } };
 }
 
 void JKRWadaEngine::requireSameSettings() const
@@ -62,6 +63,7 @@ void JKRWadaEngine::requireInRange() const
 	try {
 		yade::requireInRange(pairOptions(), neck);
 		limitRuleOf(limit);
+		if (springDamping > 0 && !(sliding && rolling && twisting)) throw std::invalid_argument(dampedWithoutSprings);
 	} catch (const std::invalid_argument& refusal) {
 		refuseInEngine(refusal.what());
 	}
@@ -89,7 +91,7 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	bool drag = linearDamping > 0;
 	for (const auto& material : materials)
 		drag = drag || material.viscoelasticTime > 0;
-	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag);
+	options.mechanisms = contact_law::mechanismsOf(sliding, rolling, twisting, drag, springDamping > 0);
 	options.limit = limitRuleOf(limit);
 	return options;
 }

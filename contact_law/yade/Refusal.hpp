@@ -49,6 +49,7 @@ inline std::string tooDeep(int id, int other, double overlap) // over the smalle
 }
 
 // What a material is changed by, in both.
+constexpr const char* dampedWithoutSprings = "springDamping: must be 0 without the springs of sliding, rolling or twisting";
 constexpr const char* changedMaterial = " was changed during the run: contact_law.set_material() does that";
 
 // ---- O.run(n) steps in a thread of its own ----

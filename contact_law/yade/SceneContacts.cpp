@@ -61,7 +61,7 @@ namespace {
 		const State &state1 = stateOf(scene, id1), &state2 = stateOf(scene, id2);
 		auto& geometry = static_cast<ScGeom&>(*interaction.geom);
 		auto& phys = static_cast<JKRWadaPhys&>(*interaction.phys);
-		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity), c.onPlane);
+		phys.set(c.geometry, c.forces, c.history.twist, fromKernel(c.velocity), c.damping, c.onPlane);
 		geometry.refR2 = radiusOf(scene, id2); // of the bodies, shrunk by sintering or not
 		if (c.onPlane) {
 			const int axis = wallOf(scene, id1)->axis;

@@ -6,11 +6,11 @@ from scenes import *
 pytestmark = pytest.mark.in_yade
 
 
-def start(step, kinds, drag=0.0, seed=5, limit="held"):
+def start(step, kinds, drag=0.0, seed=5, limit="held", mover="functors", springs=0.0):
     """A cluster of eight grains, after its first step [t0]."""
     unlike = kinds == "unlike"
     materials = [ice(viscoelasticTime=drag), *([soft(viscoelasticTime=drag)] if unlike else [])]
-    new_scene(step * unit, limit=limit)
+    new_scene(step * unit, mover, limit=limit, spring_damping=springs)
     cluster(8, seed, materials, [1e-7, 2e-7, 1.3e-7] if unlike else [1e-7], speed=4.0, spin=3e7)
     O.run(1, True)
 
@@ -23,9 +23,9 @@ def closure(step, *scene):
 
 
 @pytest.mark.parametrize("limit", ["held", "cut"])
-@pytest.mark.parametrize("kinds", ["like", "unlike"])
-def test_momentum_and_angular_momentum_to_rounding(kinds, limit):
-    start(0.1, kinds, limit=limit)
+@pytest.mark.parametrize("kinds, springs", [("like", 0.0), ("unlike", 0.0), ("unlike", 2e-11)])
+def test_momentum_and_angular_momentum_to_rounding(kinds, limit, springs):
+    start(0.1, kinds, limit=limit, springs=springs)
     before = momenta()
     O.run(600, True)
     assert energies()["slidingDissipation"] > 0 and energies()["rollingDissipation"] > 0
@@ -51,6 +51,15 @@ def test_ledger_closes_with_second_order(kinds, drag, limit):
     where the contact radius shrinks as a square root, leave order 3/2."""
     coarse, fine = (rms(closure(step, kinds, drag, seed, limit) for seed in range(6)) for step in (0.1, 0.025))
     assert coarse < 5e-4 and coarse / fine > (6 if drag else 9)
+
+
+@pytest.mark.parametrize("mover", ["functors", "fused"])
+@pytest.mark.parametrize("kinds, limit", [("like", "held"), ("unlike", "held"), ("unlike", "cut")])
+def test_ledger_with_damped_springs_closes_with_second_order(kinds, limit, mover):
+    scene = [(kinds, 0.0, seed, limit, mover, 2e-11) for seed in range(6)]
+    coarse, fine = (rms(closure(step, *one) for one in scene) for step in (0.1, 0.025))
+    assert energies()["springDamping"] > 0.01 * sum(energies()[name] for name in LOST)
+    assert coarse < 5e-4 and coarse / fine > 9
 
 
 def test_ledger_of_sustained_slip_has_second_order():

@@ -59,7 +59,7 @@ def held(**options):
 
 
 met = lambda c: c["events"] > 1000
-contacts = lambda kind, limit: engine(partial(meeting, kind, 400), limit=limit)
+contacts = lambda kind, limit, **law: engine(partial(meeting, kind, 400), limit=limit, **law)
 bonded = lambda kind: engine(partial(bonds.start, kind, 200, 12.0), neck=bonds.NECK)
 cell = lambda kind, homo: engine(partial(periodic.start, kind, 1e-3, homo, 343))
 sintered_cell = engine(partial(bonds_in_cells.start, "like", 1e-3, 2, side=4), 5, neck=0.4)
@@ -68,6 +68,7 @@ spread_out = engine(partial(spread, "drag"), 50, domains=8)
 # energies), threads.
 RUNS = {
     "drag": (contacts("drag", "held"), 60, 60, ".yade.gz", met, 2),
+    "springs damped": (contacts("drag", "held", springDamping=1e-11), 60, 60, ".yade.gz", met, 2),
     "unlike, cut": (contacts("unlike", "cut"), 60, 60, ".yade", met, 2),
     "unlike, bonds": (bonded("unlike"), 6, 40, ".xml.gz", lambda c: sum(broken()) > 50 and c["bonds"] > 20, 2),
     "bonds in a cell": (sintered_cell, 15, 15, ".yade.gz", lambda c: sum(broken()) > 10, 2),

@@ -30,8 +30,8 @@ def require_refused(cases, attempt):
     assert not others, "\n".join(f"{text}: {message!r}" for text, message in others.items())
 
 
-SETTINGS = """subSteps threads domains instructions linearDamping slidingStiffnessFactor rollingStiffnessFactor neck
-    sliding rolling twisting limit orientations exportInteractions""".split()
+SETTINGS = """subSteps threads domains instructions linearDamping slidingStiffnessFactor rollingStiffnessFactor
+    springDamping neck sliding rolling twisting limit orientations exportInteractions""".split()
 
 
 def same(**other):

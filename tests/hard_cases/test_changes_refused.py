@@ -51,6 +51,7 @@ def test_changes_after_loading_are_refused():
 
 OUT_OF_RANGE = {
     "linearDamping=float('nan')": ["linearDamping = nan: must be >= 0"],
+    "springDamping=1e-11, rolling=False": ["springDamping: must be 0 without the springs of sliding, rolling"],
     "subSteps=0": ["subSteps = 0: must be >= 1"],
     "neck=0.8": ["neck = 0.8"],
     "limit='Cut'": ["limit = 'Cut': must be 'held' or 'cut'"],

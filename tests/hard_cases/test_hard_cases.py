@@ -57,11 +57,26 @@ def test_size_ratio_ten(mover):
     assert closure(4000, 40) < 2e-3 and energies()["connection"] > 0
 
 
-def unstable_step(damping, *pair):
+def unstable_step(damping, *pair, spring_damping=0):
     """MODEL.md, "Step limits" [s]."""
     c = constants(*pair, damping=damping)
+    stiffness = max(3.5 * c["slidingStiffness"], 2.5 * c["rollingStiffness"])
+    stiffness = max(stiffness, 2.5 * c["twistingStiffness"] / c["reducedRadius"] ** 2)
+    ringing = 2 * (np.hypot(spring_damping, np.sqrt(c["reducedMass"] / stiffness)) - spring_damping)
     drag = c["dragPerContactRadius"] * c["equilibriumContactRadius"] + c["linearDrag"]
-    return min(0.5 * c["timeUnit"], c["reducedMass"] / drag if drag else np.inf)
+    of_drag = c["reducedMass"] / drag if drag else np.inf
+    return min(0.5 * c["timeUnit"], of_drag, ringing if spring_damping else np.inf)
+
+
+@BOTH
+def test_a_step_that_is_unstable_for_damped_springs(mover):
+    def touching():
+        for x in (0, 2e-7 - constants(ice(), 1e-7)["equilibriumOverlap"]):
+            grain((x, 0, 0), 1e-7, ice())
+
+    limit = unstable_step(0, ice(), 1e-7, spring_damping=1e-10)
+    assert limit < 0.9 * unstable_step(0, ice(), 1e-7)
+    assert refuses_from(limit, touching, mover=mover, spring_damping=1e-10)
 
 
 def refuses_from(limit, make, **options):

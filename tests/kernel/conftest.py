@@ -40,11 +40,19 @@ class Kernel:
         getattr(self.library, name)(*(as_c[type(a)](a) for a in arguments))
 
     def constants(
-        self, material1="ice", radius1=1e-7, material2="ice", radius2=1e-7, damping=0.0, sliding=1.0, rolling=1.0
+        self,
+        material1="ice",
+        radius1=1e-7,
+        material2="ice",
+        radius2=1e-7,
+        damping=0.0,
+        sliding=1.0,
+        rolling=1.0,
+        springs=0.0,
     ):
         out = np.empty(len(self.constant_names))
         one, other = array(MATERIALS[material1]), array(MATERIALS[material2])
-        options = map(float, (damping, sliding, rolling))
+        options = map(float, (damping, sliding, rolling, springs))
         self.call("pairConstants", one, radius1, other, radius2, *options, out)
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 

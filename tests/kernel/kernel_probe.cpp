@@ -31,9 +31,9 @@ const char* constantNames() { return CONTACT_LAW_PAIR_CONSTANTS(NAME) "inverseEq
 const char* bondConstantNames() { return CONTACT_LAW_BOND_CONSTANTS(NAME); }
 
 void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping,
-        double slidingStiffnessFactor, double rollingStiffnessFactor, double* out)
+        double slidingStiffnessFactor, double rollingStiffnessFactor, double springDamping, double* out)
 {
-	const PairOptions options { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor };
+	const PairOptions options { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
 	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, options);
 	for (const auto& constant : pairConstantsOf<double>)
 		*out++ = c.*constant.member;

@@ -55,6 +55,7 @@ def why_not(parameters, library):
         "engine = functors": parameters.engine != "fused",
         "a plate": parameters.target == collision.WALL,
         "planar = 1": bool(parameters.planar),
+        "springDamping": bool(parameters.springDamping),
         "these springs": not library.runs(mechanisms_of(parameters)),
     }
     return next((reason for reason, given in reasons.items() if given), None)

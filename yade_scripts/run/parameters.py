@@ -8,7 +8,17 @@ from ctypes import CDLL
 from dataclasses import dataclass
 
 from analysis.runs.format import value_text
-from yade_scripts.parameters import POSITIVE, SWITCH, Check, ParameterError, Parameters, between, one_of, parameter
+from yade_scripts.parameters import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    SWITCH,
+    Check,
+    ParameterError,
+    Parameters,
+    between,
+    one_of,
+    parameter,
+)
 from yade_scripts.run import table
 from yade_scripts.time_step import AUTO, STABLE_STEP
 
@@ -48,6 +58,9 @@ class RunParameters(Parameters):
         1.0, POSITIVE, "stiffness of sliding k_s over 8 a0 G*: 1 (W07, A22), or 2 (S17 eqs 11 and 12 as printed)", "1"
     )
     rollingStiffnessFactor: float = parameter(1.0, POSITIVE, "stiffness of rolling k_r over 4 F_c/R (W07, A22)", "1")
+    springDamping: float = parameter(
+        0.0, NOT_NEGATIVE, "c of the damping k c dD/dt of sliding, rolling and twisting springs; 0: they ring on", "s"
+    )
     threads: int | None = parameter(
         None,
         Check(">= 1", lambda n: n >= 1),
@@ -80,7 +93,7 @@ class RunParameters(Parameters):
         """(name of a run of these parameters, names of the parameters that are in it)."""
         return "run", ()
 
-    ONLY_WITH = [("tolerance", "stepFraction", [AUTO])]
+    ONLY_WITH = [("tolerance", "stepFraction", [AUTO]), *(("springDamping", name, [1]) for name in SPRINGS)]
 
     def filled_in(self):
         """The default tolerance with stepFraction=auto."""

@@ -60,7 +60,7 @@ inline Dynamics::Options optionsOf(const Scene& scene, int domains, int threads,
 	bool drag = options.pairs.linearDamping > 0;
 	for (const MaterialRecord& material : scene.materials)
 		drag = drag || material.viscoelasticTime > 0;
-	options.mechanisms = contact_law::mechanismsOf(true, true, true, drag);
+	options.mechanisms = contact_law::mechanismsOf(true, true, true, drag, false);
 	if (scene.periodic()) {
 		const Vec3<double> size = vector(scene.head.cellSize), strain = vector(scene.head.strainRate);
 		options.cell = contact_law::PeriodicCell::box(size, contact_law::Images<double>::times(strain, size));
