@@ -15,10 +15,12 @@ import pandas
 
 from ..printable import Refused, printable
 from .files import read_text
+from .format import CHANNEL_TABLE
 
 RUN, FOLDER = "run", "folder"
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("b", "True or False"), "O": ("O", "words")}
 ENDING = ".csv"
+LATER = {channel.name for channel in CHANNEL_TABLE if channel.since > 1}  # columns of these are zero in older tables
 # With these pandas.read_csv gives numbers the bits that were written: from 3.1 on it does so by itself, and warns of
 # the option.
 EXACTLY = {} if tuple(map(int, pandas.__version__.split(".")[:2])) >= (3, 1) else {"float_precision": "round_trip"}
@@ -80,7 +82,9 @@ def read_table(file, columns):
     except (ValueError, RecursionError) as error:  # pandas's and json's errors are ValueErrors too
         raise Refused(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
     lacking = [name for name in (RUN, *(column.name for column in columns)) if name not in table]
-    if lacking:
+    if LATER.issuperset(name.split("_")[0] for name in lacking):
+        table = table.assign(**dict.fromkeys(lacking, 0.0))
+    else:
         raise Refused(f"{file}: lacks the column {', '.join(lacking)}")
     for column in columns:
         _check(file, column, table[column.name])
