@@ -83,7 +83,7 @@ def read_table(file, columns):
         raise Refused(f"{file}: not a table of runs: {str(error).splitlines()[0]}") from None
     lacking = [name for name in (RUN, *(column.name for column in columns)) if name not in table]
     if LATER.issuperset(name.split("_")[0] for name in lacking):
-        table = table.assign(**dict.fromkeys(lacking, 0.0))
+        table = table.copy().assign(**dict.fromkeys(lacking, 0.0))
     else:
         raise Refused(f"{file}: lacks the column {', '.join(lacking)}")
     for column in columns:
