@@ -53,9 +53,9 @@ SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
 ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
-# What run.json has of a material, a contact and a bond, under `derived`.
 # What a run gives all its springs, in the order of theory.pair_constants(), and what is usual.
 OF_SPRINGS = {"slidingStiffnessFactor": 1.0, "rollingStiffnessFactor": 1.0, "springDamping": 0.0}
+# What run.json has of a material, a contact and a bond, under `derived`.
 OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
 OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
 OF_BOND = (

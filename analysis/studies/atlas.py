@@ -21,6 +21,7 @@ from ..atlas.variables import (
     variables,
 )
 from ..figures.style import letter, panels, styled
+from ..measures.fragments import growth_efficiency
 from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..runs.measured import UNLIKE
 from ..theory import ICE
@@ -94,7 +95,7 @@ def critical_speed(runs):
     if runs.speed.nunique() < 3:
         return np.nan
     q = runs.mass_ratio
-    slope, level = np.polyfit(np.log(runs.speed), (runs.largest * (1.0 + q) - 1.0) / q, 1)
+    slope, level = np.polyfit(np.log(runs.speed), growth_efficiency(runs.largest * (1.0 + q), 1.0, q), 1)
     return np.exp(-level / slope)
 
 
@@ -146,10 +147,8 @@ def _growth(known):
     what = "critical velocity of BPCA, masses below 1/16 over 1/4 to 1"
     yield Row(what, ratio, (0.75, 1.33), "hardly another: to a third", "Wada 2013")
     for name in ("bcca", "cpe", "compressed"):
-        yield Row(
-            f"critical velocity of {name}, all masses [v_break]",
-            estimate(critical_speed, known[known.structure == name]),
-        )
+        found = estimate(critical_speed, known[known.structure == name])
+        yield Row(f"critical velocity of {name}, all masses [v_break]", found)
 
 
 def _outcomes(slowly, known):

@@ -120,7 +120,7 @@ def _at_places(names, unit, meaning):
 
 _OF_CELL = {"strainRate": ("1/t0", "C_v"), "linearDamping": ("", "k_n"), "stepFraction": ("t0", "time step")}
 _OF_CELL["finalFilling"] = "", "filling factor at which the compression was to end"
-MEASURED = (
+CLUSTER = (  # of every study of compressed cells
     MATERIAL,
     parameter("grains", "", "number of grains N", "i"),
     *(parameter(name, *of) for name, of in _OF_CELL.items()),
@@ -129,6 +129,9 @@ MEASURED = (
     constant("rolling_energy", "J", "E_roll (K13 eq 1)", "rollingEnergy"),
     constant("grain_mass", "kg", "mass of a grain", "grainMass"),
     constant("time_unit", "s", "t0", "timeUnit"),
+)
+MEASURED = (
+    *CLUSTER,
     group(
         _reached,
         Column("initial_filling", "", "filling factor of the first cell"),

@@ -16,8 +16,9 @@ from ..runs.format import COMPRESSION
 from ..runs.ledger import work_closure
 from ..runs.measured import derived_constants
 from ..theory import Material, aggregates, contact_radius, pair_constants
-from .columns import GRAINS, MATERIAL, OF_GRAINS, Column, constant, group, one, parameter
+from .columns import OF_GRAINS, Column, constant, group, one
 from .comparison import Row
+from .compression import CLUSTER
 from .estimates import Estimate, beside, estimate, estimates, mean, where
 from .figures import curves
 from .study import Study
@@ -34,7 +35,8 @@ def _compressed(run, row):
     """Filling, pressure over T23's, coordination and k/k_mat at the end of the compression."""
     between, pressure = cells.pressures(run.history)
     over = pressure / aggregates.compressive_strength_dense(between, 1.0)
-    largest, last = run.history["filling"].max(), between > run.history["filling"].max() / PRESSED
+    largest = run.history["filling"].max()
+    last = between > largest / PRESSED
     scale = aggregates.strength_scale(row["rolling_energy"], row["grainRadius"])
     state = run.states[run.states.nearest(run.history["time"][np.argmax(run.history["filling"])])]
     filling = cells.filling_factor(state.radius, state.cell_size)
@@ -58,16 +60,8 @@ def _stretched(run, row):
 
 
 MEASURED = (
-    MATERIAL,
-    parameter("grains", "", "number of grains", "i"),
-    parameter("strainRate", "1/t0", "rate of compression and stretching"),
-    parameter("finalFilling", "", "filling factor at which the compression ends"),
-    parameter("seed", "", "random seed of the cluster", "i"),
-    parameter("stepFraction", "t0", "time step"),
-    *GRAINS,
-    constant("rolling_energy", "J", "E_roll", "rollingEnergy"),
+    *CLUSTER,
     constant("equilibrium_contact_radius", "m", "a0", "equilibriumContactRadius"),
-    constant("time_unit", "s", "t0", "timeUnit"),
     group(
         _compressed,
         Column("filling", "", "largest filling factor"),

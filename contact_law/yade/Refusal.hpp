@@ -48,7 +48,7 @@ inline std::string tooDeep(int id, int other, double overlap) // over the smalle
 	        + " of the smaller radius";
 }
 
-// What a material is changed by, in both.
+// In both: springs, and what a material is changed by.
 constexpr const char* dampedWithoutSprings = "springDamping: must be 0 without the springs of sliding, rolling or twisting";
 constexpr const char* changedMaterial = " was changed during the run: contact_law.set_material() does that";
 
