@@ -40,11 +40,12 @@ def turned(v, angle):
 # ---- constants and normal motion, from analysis.theory; m1, m2: theory.Material ----
 
 
-def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1, spring_damping=0):
+def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1, spring_damping=0, mixed_factor=1):
     """Constants of a contact of grains with radii r1, r2, which necks (beta) have shrunk at constant mass."""
     s = theory.shrunk_radius(beta)
     m1, m2 = (replace(m, density=m.density / s**3) for m in (m1, m2))
-    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, sliding_factor, rolling_factor, spring_damping)
+    of_springs = sliding_factor, rolling_factor, spring_damping
+    c = theory.pair_constants(m1, s * r1, m2, s * r2, damping, *of_springs, mixed_factor)
     of_springs = dict(r1=s * r1, r2=s * r2, R=c.reduced_radius)
     of_springs |= dict(ks=c.sliding_stiffness, kr=c.rolling_stiffness, kt=c.twisting_stiffness)
     limits = dict(zeta_crit=c.critical_sliding, xi_crit=c.critical_rolling, phi_crit=c.critical_twisting)
@@ -53,9 +54,9 @@ def pair(m1, r1, m2, r2, beta, damping=0, sliding_factor=1, rolling_factor=1, sp
     return SimpleNamespace(**of_springs, **limits, **normal, **drag, a0=c.equilibrium_contact_radius)
 
 
-def bond(m1, r1, m2, r2, beta):
+def bond(m1, r1, m2, r2, beta, mixed_factor=1):
     """Constants of a sintered bond of grains with radii r1, r2 before sintering."""
-    b = theory.bond_constants(m1, r1, beta, m2, r2)
+    b = theory.bond_constants(m1, r1, beta, m2, r2, mixed_factor)
     of_springs = dict(r1=r1, r2=r2, R=r1 * r2 / (r1 + r2))
     of_springs |= dict(ks=b.sliding_stiffness, kr=b.rolling_stiffness, kt=b.twisting_stiffness)
     return SimpleNamespace(**of_springs, kn=b.normal_stiffness, breaking=b.breaking_energy)
@@ -257,7 +258,7 @@ class Scene:
         if (i, j) not in self.constants:
             grains = self.materials[i], self.radii[i], self.materials[j], self.radii[j], self.neck
             contact = pair(*grains, **self.options)
-            self.constants[i, j] = contact, bond(*grains) if self.neck else None
+            self.constants[i, j] = contact, bond(*grains, self.options.get("mixed_factor", 1)) if self.neck else None
         c, b = self.constants[i, j]
         p = SimpleNamespace(i=i, j=j, x=x, v=self.v[i] - self.v[j], w1=self.w[i], w2=self.w[j], drag=0.0, bonded=False)
         p.distance, p.mass = sqrt(x @ x), 1 / (1 / self.mass[i, 0] + 1 / self.mass[j, 0])

@@ -32,6 +32,7 @@ SHORT = {
     "sliding_factor": "slidingStiffnessFactor",
     "rolling_factor": "rollingStiffnessFactor",
     "spring_damping": "springDamping",
+    "mixed_factor": "mixedSurfaceEnergyFactor",
 }
 
 
@@ -45,12 +46,14 @@ def constants(material1, radius1, material2=None, radius2=None, **options):
     return functor.pairConstants(material1, radius1, material2 or material1, radius2 or radius1)
 
 
-def functor_engines(damping=0, verlet=0.0, neck=0, sliding_factor=1, rolling_factor=1, spring_damping=0, **law):
+def functor_engines(
+    damping=0, verlet=0.0, neck=0, sliding_factor=1, rolling_factor=1, spring_damping=0, mixed_factor=1, **law
+):
     """With all of YADE's shapes that meet spheres; the law refuses facets and boxes."""
     bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
     shapes = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()]
     of_pairs = dict(damping=damping, neck=neck, sliding_factor=sliding_factor, rolling_factor=rolling_factor)
-    of_pairs |= dict(spring_damping=spring_damping)
+    of_pairs |= dict(spring_damping=spring_damping, mixed_factor=mixed_factor)
     pairs = Ip2_JKRMat_JKRMat_JKRWadaPhys(**attributes(of_pairs))
     loop = InteractionLoop(shapes, [pairs], [Law2_ScGeom_JKRWadaPhys_JKRWada(**law)])
     return [ForceResetter(), InsertionSortCollider(bounds, verletDist=verlet), loop, NewtonIntegrator(damping=0)]

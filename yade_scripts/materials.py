@@ -53,8 +53,9 @@ SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
 ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
 MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
-# What a run gives all its springs, in the order of theory.pair_constants(), and what is usual.
-OF_SPRINGS = {"slidingStiffnessFactor": 1.0, "rollingStiffnessFactor": 1.0, "springDamping": 0.0}
+MIXED_FACTOR = "mixedSurfaceEnergyFactor"
+# What a run gives all its pairs, in the order of theory.pair_constants(), and what is usual.
+OF_PAIRS = {"slidingStiffnessFactor": 1.0, "rollingStiffnessFactor": 1.0, "springDamping": 0.0, MIXED_FACTOR: 1.0}
 # What run.json has of a material, a contact and a bond, under `derived`.
 OF_MATERIAL = ("young", "poisson", "surfaceEnergy", "density", "criticalRolling", "viscoelasticTime")
 OF_CONTACT = ("equilibriumContactRadius", "equilibriumOverlap", "pullOffOverlap", "pullOffForce", "timeUnit")
@@ -86,6 +87,9 @@ class GrainParameters(Parameters):
         f"of two materials: {MIXED} at random (if left out), the second one outside, at the larger x, or the whole "
         "projectile of it",
     )
+    mixedSurfaceEnergyFactor: float = parameter(
+        1.0, POSITIVE, "surface energy of a contact of two unlike materials over the geometric mean of theirs", "1"
+    )
     grainRadius: float | None = parameter(None, POSITIVE, "radius of a grain", "m", usual=GRAINS)
     young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
     poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")
@@ -104,6 +108,10 @@ class GrainParameters(Parameters):
         of_first = asdict(known[self.material_names[0]])
         if len(self.material_names) == 1:
             self._require_left_out("with one material", ("materialFraction", "layout"))
+            if (factor := self.mixedSurfaceEnergyFactor) != 1:
+                raise ParameterError(
+                    f"mixedSurfaceEnergyFactor = {factor:g}: given with one material; must be left out"
+                )
             found = self
         else:
             self._require_left_out("with two materials, whose own it is", PROPERTIES)
@@ -173,15 +181,15 @@ def _materials_as_written(file, _when):
 def pair_constants(grains, radii=None, neck=0.0, linearDamping=0.0, other=None):
     """Constants of a contact of two grains, where no YADE runs. A run takes them from the plugin; a test compares.
 
-    grains: with the attributes of Material, perhaps viscoelasticTime [s] and OF_SPRINGS; other: likewise, of the
+    grains: with the attributes of Material, perhaps viscoelasticTime [s] and OF_PAIRS; other: likewise, of the
     second grain where it is of another material; radii: of the two [m], both grainRadius if left out; neck: beta
     of sintered grains; linearDamping: k_n. Returns {name: value} by the plugin's names, SI; with a neck those of a
     bond, of two grains of grainRadius, as "bond".
     """
     both = [_material_of(of) for of in (grains, other or grains)]
     first, second = radii or (grains.grainRadius, grains.grainRadius)
-    springs = [getattr(grains, name, usual) for name, usual in OF_SPRINGS.items()]
-    found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, *springs))
+    options = [getattr(grains, name, usual) for name, usual in OF_PAIRS.items()]
+    found = _by_plugins_names(_pair_constants(both[0], first, both[1], second, linearDamping, *options))
     if neck:
         found["bond"] = _by_plugins_names(_bond_constants(both[0], grains.grainRadius, neck))
         found["bond"]["shrunkRadius"] = grains.grainRadius * theory.shrunk_radius(neck)
@@ -229,13 +237,14 @@ def derived_grains(each, constants):
 
 
 def derived_materials(each):
-    """The same of several materials: their properties, and F_c delta_c [J] of each pair of two grains of grainRadius;
-    {} of one."""
+    """The same of several materials: their properties, the factor of unlike ones, and F_c delta_c [J] of each pair of
+    two grains of grainRadius; {} of one."""
     if len(each) == 1:
         return {}
     energy = lambda pair: pair["pullOffForce"] * pair["pullOffOverlap"]
     materials = [{"name": own.material, **{name: getattr(own, name) for name in PROPERTIES}} for own in each]
-    return {"materials": materials, "pullOffEnergies": of_pairs(each, energy).tolist()}
+    factor = getattr(each[0], MIXED_FACTOR, 1.0)
+    return {"materials": materials, MIXED_FACTOR: factor, "pullOffEnergies": of_pairs(each, energy).tolist()}
 
 
 def require_small_contacts(grains, radius=None):

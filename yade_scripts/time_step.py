@@ -7,7 +7,7 @@ where grains are sintered."""
 import math
 from functools import partial
 
-from yade_scripts.materials import OF_SPRINGS, pair_constants
+from yade_scripts.materials import OF_PAIRS, pair_constants
 from yade_scripts.packings.aggregate import EQUAL
 from yade_scripts.packings.lattice import maximum_filling
 from yade_scripts.parameters import ParameterError
@@ -148,7 +148,7 @@ def _require_measured(parameters, *unmeasured):
         (not parameters.has_all_springs, "springs left out"),
         *(
             (getattr(parameters, name) != usual, f"{name} = {getattr(parameters, name):g}")
-            for name, usual in OF_SPRINGS.items()
+            for name, usual in OF_PAIRS.items()
         ),
     )
     for wrong, what in (*several, *unmeasured):

@@ -204,7 +204,7 @@ _BY_UNIT = {
     "of that at rest": "initialOverlap",
     "1": "impact neck filling initialFilling finalFilling stretchFilling sizeRatio sizeFraction sizeSpread "
     "sizeExponent materialFraction poisson tolerance slidingStiffnessFactor "
-    "rollingStiffnessFactor linearDamping",
+    "rollingStiffnessFactor mixedSurfaceEnergyFactor linearDamping",
 }
 PARAMETER_UNITS = {name: unit for unit, names in _BY_UNIT.items() for name in names.split()}
 

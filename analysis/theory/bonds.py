@@ -5,7 +5,7 @@ Of unlike grains R_g = 2 r1 r2/(r1 + r2), and half of the elastic disk is of eit
 from dataclasses import dataclass
 from math import asin, pi, sqrt
 
-from .pair_constants import Material
+from .pair_constants import Material, mixed_surface_energy
 
 
 @dataclass(frozen=True)
@@ -22,14 +22,21 @@ class BondConstants:
 
 
 def bond_constants(
-    material: Material, radius: float, neck: float, material2: Material | None = None, radius2: float | None = None
+    material: Material,
+    radius: float,
+    neck: float,
+    material2: Material | None = None,
+    radius2: float | None = None,
+    mixed_factor: float = 1.0,
 ) -> BondConstants:
-    """BondConstants of two grains of radii [m] before they sintered; the second equals the first if left out."""
+    """BondConstants of two grains of radii [m] before they sintered; the second equals the first if left out.
+
+    mixed_factor: gamma of unlike materials over the geometric mean of theirs."""
     both = (material, material2 or material)
     reduced = 1.0 / (1.0 / radius + 1.0 / (radius2 or radius))
     young, shear = (2.0 / sum(1.0 / getattr(m, name) for m in both) for name in ("young", "shear"))
     a, length = neck * 2.0 * reduced, neck_length(neck, 2.0 * reduced)
-    area, surface_energy = pi * a**2, sqrt(both[0].surface_energy * both[1].surface_energy)
+    area, surface_energy = pi * a**2, mixed_surface_energy(*both, mixed_factor)
     return BondConstants(
         neck_radius=a,
         neck_length=length,

@@ -70,6 +70,12 @@ def time_unit(density, radius, reduced_young, surface_energy):
     return 0.95 * density**0.5 * radius ** (7.0 / 6.0) / (reduced_young ** (1.0 / 3.0) * surface_energy ** (1.0 / 6.0))
 
 
+def mixed_surface_energy(material1, material2, factor=1.0):
+    """gamma [J/m^2] of a contact: the geometric mean of two Material, times a factor where they are unlike."""
+    mean = sqrt(material1.surface_energy * material2.surface_energy)
+    return mean if material1 == material2 else factor * mean
+
+
 def pair_constants(
     material1,
     radius1,
@@ -79,6 +85,7 @@ def pair_constants(
     sliding_factor=1.0,
     rolling_factor=1.0,
     spring_damping=0.0,
+    mixed_factor=1.0,
 ):
     """Constants of the contact of two grains, or of a grain and a plane.
 
@@ -96,6 +103,8 @@ def pair_constants(
         k_r over 4 F_c/R.
     spring_damping : float [s]
         c of the springs' damping.
+    mixed_factor : float
+        gamma of two unlike materials over the geometric mean of theirs.
 
     Returns
     -------
@@ -110,7 +119,7 @@ def pair_constants(
     young = 1.0 / sum((1.0 - m.poisson**2) / m.young for m in both)
     sliding_shear = 1.0 / sum((2.0 - m.poisson) / m.shear for m in both)
     twisting_shear = 1.0 / sum(1.0 / m.shear for m in both)
-    gamma = sqrt(material1.surface_energy * material2.surface_energy)
+    gamma = mixed_surface_energy(material1, material2, mixed_factor)
 
     a0 = (9.0 * pi * gamma * R * R / young) ** (1.0 / 3.0)
     delta0 = a0 * a0 / (3.0 * R)

@@ -12,7 +12,7 @@ namespace contact_law {
 
 namespace {
 	constexpr double magicNumber = 0x4A4B5257; // "JKRW"
-	constexpr int formatNumber = 11;
+	constexpr int formatNumber = 12;
 
 	// Of the bits of all numbers before the last (FNV-1a, by words); whole, and below 2^53.
 	double sumOfBits(const std::vector<double>& numbers, std::size_t count)
@@ -208,6 +208,7 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
 	archive.same(shared.pairs.rollingStiffnessFactor, "rollingStiffnessFactor");
 	archive.same(shared.pairs.springDamping, "springDamping");
+	archive.same(shared.pairs.mixedSurfaceEnergyFactor, "mixedSurfaceEnergyFactor");
 	archive.same(shared.neck, "neck");
 	transferSize(archive, shared.necks);
 	for (double& neck : shared.necks)

@@ -101,7 +101,8 @@ void Dynamics::shrinkGrains()
 	const Material& m = shared.material[shared.kind[0]];
 	const double r = shared.grainRadius[0];
 	shared.common = deriveShrunkPair(m, r, m, r, shared.pairs, shared.neck);
-	if (shared.neck > 0) shared.commonBond = deriveBond(m, r, m, r, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
+	if (shared.neck > 0)
+		shared.commonBond = deriveBond(m, r, m, r, shared.pairs, shared.necks.size() == 1 ? shared.necks[0] : shared.neck);
 	shared.skin = std::max(0.8 * shared.smallestRadius, 1.1 * mostStretched(*this));
 }
 

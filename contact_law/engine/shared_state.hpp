@@ -107,7 +107,8 @@ struct SharedState {
 	bool uniformBonds() const { return uniform && necks.size() <= 1; }
 	BondConstants<double> bondOf(int i, int j, double beta) const
 	{
-		return uniformBonds() ? commonBond : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], beta);
+		return uniformBonds() ? commonBond
+		                      : deriveBond(material[kind[i]], grainRadius[i], material[kind[j]], grainRadius[j], pairs, beta);
 	}
 };
 

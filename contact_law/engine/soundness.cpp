@@ -70,7 +70,7 @@ double unstableStepOfBonds(const Dynamics& dynamics, double neck)
 	double least = 1e300;
 	eachExtremePair(dynamics, [&](int i, int j) {
 		const BondConstants<double> b = deriveBond(shared.material[shared.kind[i]], shared.grainRadius[i],
-		        shared.material[shared.kind[j]], shared.grainRadius[j], neck);
+		        shared.material[shared.kind[j]], shared.grainRadius[j], shared.pairs, neck);
 		least = std::min(least,
 		        unstableStep(b, shared.inverseMass[i] + shared.inverseMass[j], shared.inverseInertia[i], shared.inverseInertia[j]));
 	});

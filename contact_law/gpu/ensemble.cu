@@ -158,7 +158,7 @@ extern "C" {
 struct CollisionInput {
 	int grains, contacts, kinds, bonded, mechanisms, limit, interval, slots, pairs, contactsOfAGrain, intervalAfter;
 	long long steps, changesAt;
-	double dt, dtAfter, neck, linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, skin;
+	double dt, dtAfter, neck, linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, mixedSurfaceEnergyFactor, skin;
 	const double *position, *velocity, *spin, *mass, *inertia, *radius, *materials;
 	const int *kind, *aggregate, *touching;
 };
@@ -189,7 +189,7 @@ void* collision_start(const CollisionInput* given)
 	c.bonds = g.bonded ? g.contacts : 0, c.slots = g.contacts, c.stepsLeft = g.steps;
 	c.changesAt = g.changesAt, c.intervalAfter = g.intervalAfter, c.dtAfter = g.dtAfter;
 	c.dt = g.dt, c.neck = g.neck, c.skin = g.skin;
-	c.options = { g.linearDamping, g.slidingStiffnessFactor, g.rollingStiffnessFactor };
+	c.options = { g.linearDamping, g.slidingStiffnessFactor, g.rollingStiffnessFactor, 0, g.mixedSurfaceEnergyFactor };
 	c.uniform = true;
 	for (int k = 1; k < g.grains; ++k)
 		c.uniform = c.uniform && g.radius[k] == g.radius[0] && g.kind[k] == g.kind[0];
@@ -207,7 +207,7 @@ void* collision_start(const CollisionInput* given)
 		all.first[k] = g.touching[2 * k], all.second[k] = g.touching[2 * k + 1];
 	const Material& m = all.material[all.kind[0]];
 	all.common = deriveShrunkPair(m, g.radius[0], m, g.radius[0], c.options, c.neck);
-	if (c.bonds) all.commonBond = deriveBond(m, g.radius[0], m, g.radius[0], c.neck);
+	if (c.bonds) all.commonBond = deriveBond(m, g.radius[0], m, g.radius[0], c.options, c.neck);
 	return held->write() ? held.release() : nullptr;
 }
 

@@ -24,7 +24,7 @@ namespace gpu {
 		const int i = c.first[slot], j = c.second[slot];
 		const Material &one = c.material[c.kind[i]], &other = c.material[c.kind[j]];
 		c.constants[slot] = deriveShrunkPair(one, c.radius[i], other, c.radius[j], c.options, c.neck);
-		if (slot < c.bonds) c.bondConstants[slot] = deriveBond(one, c.radius[i], other, c.radius[j], c.neck);
+		if (slot < c.bonds) c.bondConstants[slot] = deriveBond(one, c.radius[i], other, c.radius[j], c.options, c.neck);
 	}
 
 	GPU inline ContactMotion motionOf(const Collision& c, int i, int j, double dt)

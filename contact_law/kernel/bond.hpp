@@ -69,7 +69,8 @@ constexpr T BondConstants<T>::*bondConstantsOf[] = {
 
 /* S17 (1)-(6). Unlike grains: R_g = 2 r1 r2/(r1 + r2), half of the disk of either material (1/E = mean of 1/E_i, G likewise), gamma as
  * for any contact. */
-inline BondConstants<double> deriveBond(const Material& material1, double radius1, const Material& material2, double radius2, double beta)
+inline BondConstants<double> deriveBond(
+        const Material& material1, double radius1, const Material& material2, double radius2, const PairOptions& options, double beta)
 {
 	const double E1 = material1.young, E2 = material2.young;
 	const double G1 = E1 / (2 * (1 + material1.poisson)), G2 = E2 / (2 * (1 + material2.poisson));
@@ -86,7 +87,7 @@ inline BondConstants<double> deriveBond(const Material& material1, double radius
 	b.rollingStiffness = area * a * a * E / (4 * d * R * R); // S17 (5)
 	b.twistingStiffness = area * a * a * G / (2 * d);        // polar moment of a disk; S17 is planar and has none
 	b.neck = beta;
-	b.breakingEnergy = area * std::sqrt(material1.surfaceEnergy) * std::sqrt(material2.surfaceEnergy);
+	b.breakingEnergy = area * surfaceEnergy(material1, material2, options);
 	return b;
 }
 

@@ -21,11 +21,23 @@ struct Material {
 
 // What a scene sets for all its pairs, whatever they are made of.
 struct PairOptions {
-	double linearDamping = 0;          // k_n, K13 (4)
-	double slidingStiffnessFactor = 1; // k_s over A22's (18); 2: of S17's (11) and (12)
-	double rollingStiffnessFactor = 1; // k_r over A22's (14)
-	double springDamping = 0;          // c of the springs' damping [s] (spring_damping.hpp)
+	double linearDamping = 0;            // k_n, K13 (4)
+	double slidingStiffnessFactor = 1;   // k_s over A22's (18); 2: of S17's (11) and (12)
+	double rollingStiffnessFactor = 1;   // k_r over A22's (14)
+	double springDamping = 0;            // c of the springs' damping [s] (spring_damping.hpp)
+	double mixedSurfaceEnergyFactor = 1; // gamma of two unlike materials over the geometric mean of theirs
 };
+
+inline bool areAlike(const Material& a, const Material& b)
+{
+	return a.young == b.young && a.poisson == b.poisson && a.density == b.density && a.surfaceEnergy == b.surfaceEnergy
+	        && a.criticalRolling == b.criticalRolling && a.viscoelasticTime == b.viscoelasticTime;
+}
+inline double surfaceEnergy(const Material& a, const Material& b, const PairOptions& options)
+{
+	const double mean = std::sqrt(a.surfaceEnergy) * std::sqrt(b.surfaceEnergy);
+	return areAlike(a, b) ? mean : options.mixedSurfaceEnergyFactor * mean;
+}
 
 /* The constants of a contact, listed once: name, whether a step's forces read it, and what it is. From this list follow the members
  * below, the attributes of JKRWadaConstants, their copying, and what the engine holds of a contact in scenes with several kinds of pairs
@@ -75,7 +87,7 @@ constexpr PairConstant<T> pairConstantsOf[] = {
 
 /* Unlike grains. The elastic moduli follow from contact mechanics: 1/E* = sum (1 - nu^2)/E, 1/G* = sum (2 - nu)/G,
  * 1/G' = sum 1/G. The sliding limit is the force G' a0^2/(2 pi), which is (2 - nu) a0/(16 pi) over k_s for equal materials
- * (A22 eqs 18, 19). The rest is a rule: geometric mean of the surface energies, arithmetic mean of xi_crit and of the
+ * (A22 eqs 18, 19). The rest is a rule: geometric mean of the surface energies (times a factor that a script gives), arithmetic mean of xi_crit and of the
  * viscous coefficient T_vis/nu^2. A time unit for two unlike grains is that of equal ones of radius 2R and mass 2m*.
  * An infinite radius2 is a plane: R = r1, m* = m1. */
 inline PairConstants<double> derivePair(
@@ -84,7 +96,7 @@ inline PairConstants<double> derivePair(
 	const Material &m1 = material1, &m2 = material2;
 	const double G1 = m1.young / (2 * (1 + m1.poisson)), G2 = m2.young / (2 * (1 + m2.poisson));
 	const double twistingShear = 1 / (1 / G1 + 1 / G2); // G'
-	const double gamma = std::sqrt(m1.surfaceEnergy) * std::sqrt(m2.surfaceEnergy);
+	const double gamma = surfaceEnergy(m1, m2, options);
 	const double mass1 = 4 * pi / 3 * m1.density * radius1 * radius1 * radius1;
 	const double mass2 = 4 * pi / 3 * m2.density * radius2 * radius2 * radius2;
 	const auto viscous = [](const Material& m) { return m.viscoelasticTime > 0 ? m.viscoelasticTime / (m.poisson * m.poisson) : 0.; };

@@ -64,6 +64,7 @@ void requireInRange(const contact_law::PairOptions& options, Real neck)
 	requirePositive("slidingStiffnessFactor", options.slidingStiffnessFactor, "");
 	requirePositive("rollingStiffnessFactor", options.rollingStiffnessFactor, "");
 	requireNotNegative("springDamping", options.springDamping, " [s]");
+	requirePositive("mixedSurfaceEnergyFactor", options.mixedSurfaceEnergyFactor, "");
 	require(neck >= 0 && neck <= contact_law::largestNeck, "neck", neck, "0 (no bonds), or up to 0.7 for sintered bonds");
 }
 
@@ -196,10 +197,11 @@ namespace {
 		return { contact_law::deriveShrunkPair(first, geometry.refR1, second, geometry.refR2, options, neck), first, second };
 	}
 
-	contact_law::BondConstants<double> bondOf(const KindOfPair& kind, const Interaction& interaction, Real neck)
+	contact_law::BondConstants<double> bondOf(
+	        const KindOfPair& kind, const Interaction& interaction, const contact_law::PairOptions& options, Real neck)
 	{
 		const auto& geometry = *YADE_CAST<const GenericSpheresContact*>(interaction.geom.get());
-		return contact_law::deriveBond(kind.material1, geometry.refR1, kind.material2, geometry.refR2, neck);
+		return contact_law::deriveBond(kind.material1, geometry.refR1, kind.material2, geometry.refR2, options, neck);
 	}
 
 	// visit(interaction, its JKRWadaPhys), of all that have one with constants
@@ -237,7 +239,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::go(
 	const bool overlap = spheres && spheres->penetrationDepth > 0; // Ig2 may have found them further apart
 	if (neck != 0 && overlap && scene->iter < bondsBefore) {
 		const Real own = sinteredEarly > 0 ? sinteredEarly : neck;
-		phys->setBond(bonds.of(bondOf(kind, *interaction, own)));
+		phys->setBond(bonds.of(bondOf(kind, *interaction, options(), own)));
 	}
 }
 
@@ -271,7 +273,7 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::setMaterial(const shared_ptr<JKRMat>& materi
 		if (!phys.constantsToCome && SharedConstants::same(phys.constants->kind(), kind)) return;
 		const JKRWadaBond* bond = (phys.bondToCome ? phys.bondToCome : phys.bond).get();
 		phys.constantsToCome = constants.of(kind);
-		if (bond) phys.bondToCome = bonds.of(bondOf(kind, interaction, bond->neck));
+		if (bond) phys.bondToCome = bonds.of(bondOf(kind, interaction, options(), bond->neck));
 		if (!phys.touching) phys.takeConstantsToCome();
 	});
 }
@@ -300,7 +302,7 @@ void sinterContacts(const Scene& scene, const contact_law::PairOptions& options,
 		else {
 			phys.constantsToCome = shrunk;
 			// one that was sintered since the latest step keeps its neck
-			if (!phys.bondToCome) phys.bondToCome = bonds.of(bondOf(kind, interaction, neck));
+			if (!phys.bondToCome) phys.bondToCome = bonds.of(bondOf(kind, interaction, options, neck));
 		}
 	});
 }
@@ -331,7 +333,7 @@ boost::python::dict Ip2_JKRMat_JKRMat_JKRWadaPhys::bondConstants(
 	requireInRange(*material1, radius1, *material2, radius2);
 	require(neck > 0, "neck", neck, "> 0: without one there are no bonds");
 	JKRWadaBond bond;
-	bond.set(contact_law::deriveBond(material1->forKernel(), radius1, material2->forKernel(), radius2, neck));
+	bond.set(contact_law::deriveBond(material1->forKernel(), radius1, material2->forKernel(), radius2, options(), neck));
 	return bond.pyDict();
 }
 

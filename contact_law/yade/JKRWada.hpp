@@ -25,7 +25,7 @@ public:
 		"2022, Table 1). "
 		"The defaults are those of water ice; young (7e9 Pa), poisson (0.25) and density (1000 kg/m^3) are attributes of YADE's "
 		"own.",
-		((Real, surfaceEnergy, 0.1, Attr::triggerPostLoad, "Surface energy gamma [J/m^2]. A pair takes the geometric mean."))
+		((Real, surfaceEnergy, 0.1, Attr::triggerPostLoad, "Surface energy gamma [J/m^2]. A pair takes the geometric mean, times mixedSurfaceEnergyFactor."))
 		((Real, criticalRolling, 8e-10, Attr::triggerPostLoad, "Rolling displacement xi_crit beyond which grains roll "
 			"irreversibly [m]. A pair takes the arithmetic mean."))
 		((Real, viscoelasticTime, 0, Attr::triggerPostLoad, "Viscoelastic time T_vis of the normal drag 2 T_vis E*/nu^2 a v [s]; "
@@ -175,7 +175,7 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 
 	contact_law::PairOptions options() const
 	{
-		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
+		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping, mixedSurfaceEnergyFactor };
 	}
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 	void requireSameMaterials(const JKRWadaPhys&, const JKRMat& material1, const JKRMat& material2, const Interaction&) const;
@@ -205,6 +205,8 @@ public:
 		((Real, rollingStiffnessFactor, 1, Attr::triggerPostLoad, "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
 		((Real, springDamping, 0, Attr::triggerPostLoad, "Damps sliding, rolling and twisting springs of ordinary contacts: c of "
 			"the force k c dD/dt beside k D [s]; 0: they ring on."))
+		((Real, mixedSurfaceEnergyFactor, 1, Attr::triggerPostLoad, "Surface energy of a contact or bond of two unlike materials over "
+			"the geometric mean of theirs."))
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 "
 			"r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at "

@@ -30,7 +30,7 @@ class JKRWadaEngine : public GlobalEngine {
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
 	contact_law::PairOptions pairOptions() const
 	{
-		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
+		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping, mixedSurfaceEnergyFactor };
 	}
 	int threadsOrYades() const;
 	void requireInRange() const;
@@ -106,6 +106,8 @@ public:
 		((Real, rollingStiffnessFactor, 1, , "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
 		((Real, springDamping, 0, , "Damps sliding, rolling and twisting springs of ordinary contacts: c of the force k c dD/dt "
 			"beside k D [s]; 0: they ring on."))
+		((Real, mixedSurfaceEnergyFactor, 1, , "Surface energy of a contact or bond of two unlike materials over the geometric mean of "
+			"theirs."))
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that "
 			"touch at the start are bonded, all others as shrunk as they "
 			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`). After sinter(): the largest neck of any bond."))

@@ -39,9 +39,9 @@ JKRWadaEngine::Settings JKRWadaEngine::settings() const
 {
 	return { { "domains", text(domains) }, { "instructions", text(instructions) }, { "linearDamping", text(linearDamping) },
 		{ "slidingStiffnessFactor", text(slidingStiffnessFactor) }, { "rollingStiffnessFactor", text(rollingStiffnessFactor) },
-		{ "springDamping", text(springDamping) }, { "neck", text(neck) }, { "sliding", text(sliding) },
-		{ "rolling", text(rolling) }, { "twisting", text(twisting) }, { "limit", text(limit) },
-		{ "orientations", text(orientations) } };
+		{ "springDamping", text(springDamping) }, { "mixedSurfaceEnergyFactor", text(mixedSurfaceEnergyFactor) },
+		{ "neck", text(neck) }, { "sliding", text(sliding) }, { "rolling", text(rolling) }, { "twisting", text(twisting) },
+		{ "limit", text(limit) }, { "orientations", text(orientations) } };
 }
 
 void JKRWadaEngine::requireSameSettings() const

@@ -84,6 +84,8 @@ def grains(name):
         "springs damped, met": lambda: converging(12, 3, [viscous], [1e-7], speed=12),
         "springs damped, cut": lambda: cluster(10, 5, [viscous, soft_viscous], [1e-7, 1.3e-7], speed=6, spin=1e8),
         "springs damped, bonded": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
+        "mixed, clinging": lambda: converging(12, 2, [one, other], [1e-7, 1.5e-7], speed=20),
+        "mixed, bonded": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
         "bonded": lambda: cluster(12, 4, [one], [1e-7], speed=10, spin=2e8),
         "bonded-viscous": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
     }[name]
@@ -104,6 +106,8 @@ CASES = {
     "springs damped, met": (300, {"spring_damping": 1e-11}, "sliding rolling twisting connection drag springDamping"),
     "springs damped, cut": (300, {"limit": "cut", "spring_damping": 1e-11}, "sliding rolling twisting springDamping"),
     "springs damped, bonded": (250, {"neck": 0.5, "step": 0.05, "spring_damping": 1e-11}, "bondBreaking springDamping"),
+    "mixed, clinging": (300, {"mixed_factor": 2.5}, "sliding rolling twisting connection"),
+    "mixed, bonded": (250, {"neck": 0.5, "step": 0.05, "mixed_factor": 0.4}, "bondBreaking sliding rolling twisting"),
     "bonded": (250, {"neck": 0.3, "step": 0.05}, "bondBreaking sliding rolling twisting"),
     "bonded-viscous": (250, {"neck": 0.5, "step": 0.05}, "bondBreaking sliding rolling twisting drag"),
 }

@@ -31,7 +31,8 @@ def require_refused(cases, attempt):
 
 
 SETTINGS = """subSteps threads domains instructions linearDamping slidingStiffnessFactor rollingStiffnessFactor
-    springDamping neck sliding rolling twisting limit orientations exportInteractions""".split()
+    springDamping mixedSurfaceEnergyFactor neck sliding rolling twisting limit orientations
+    exportInteractions""".split()
 
 
 def same(**other):

@@ -49,10 +49,11 @@ class Kernel:
         sliding=1.0,
         rolling=1.0,
         springs=0.0,
+        mixed=1.0,
     ):
         out = np.empty(len(self.constant_names))
         one, other = array(MATERIALS[material1]), array(MATERIALS[material2])
-        options = map(float, (damping, sliding, rolling, springs))
+        options = map(float, (damping, sliding, rolling, springs, mixed))
         self.call("pairConstants", one, radius1, other, radius2, *options, out)
         return SimpleNamespace(array=out, **dict(zip(self.constant_names, out)))
 

@@ -31,9 +31,10 @@ const char* constantNames() { return CONTACT_LAW_PAIR_CONSTANTS(NAME) "inverseEq
 const char* bondConstantNames() { return CONTACT_LAW_BOND_CONSTANTS(NAME); }
 
 void pairConstants(const double* material1, double radius1, const double* material2, double radius2, double linearDamping,
-        double slidingStiffnessFactor, double rollingStiffnessFactor, double springDamping, double* out)
+        double slidingStiffnessFactor, double rollingStiffnessFactor, double springDamping, double mixedSurfaceEnergyFactor, double* out)
 {
-	const PairOptions options { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping };
+	const PairOptions options { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping,
+		mixedSurfaceEnergyFactor };
 	const PairConstants<double> c = derivePair(material(material1), radius1, material(material2), radius2, options);
 	for (const auto& constant : pairConstantsOf<double>)
 		*out++ = c.*constant.member;
@@ -86,7 +87,7 @@ void neckGeometry(double beta, double* out)
 
 void bondConstants(const double* material1, double radius1, const double* material2, double radius2, double beta, double* out)
 {
-	const BondConstants<double> b = deriveBond(material(material1), radius1, material(material2), radius2, beta);
+	const BondConstants<double> b = deriveBond(material(material1), radius1, material(material2), radius2, {}, beta);
 	for (const auto member : bondConstantsOf<double>)
 		*out++ = b.*member;
 }

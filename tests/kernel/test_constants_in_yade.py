@@ -5,7 +5,11 @@ from scenes import *
 
 def of_the_plugin():
     functor = Ip2_JKRMat_JKRMat_JKRWadaPhys(
-        linearDamping=0.02, slidingStiffnessFactor=2, rollingStiffnessFactor=3, springDamping=1e-12
+        linearDamping=0.02,
+        slidingStiffnessFactor=2,
+        rollingStiffnessFactor=3,
+        springDamping=1e-12,
+        mixedSurfaceEnergyFactor=0.3,
     )
     bonding = Ip2_JKRMat_JKRMat_JKRWadaPhys(neck=0.4)
     return (
@@ -16,7 +20,7 @@ def of_the_plugin():
 
 def test_attributes_are_the_kernels_constants_to_the_bit(yade, kernel):
     pair_found, bond_found = yade(of_the_plugin)
-    pair = kernel.constants("ice", 1e-7, "viscous", 3e-7, 0.02, 2, 3, 1e-12)
+    pair = kernel.constants("ice", 1e-7, "viscous", 3e-7, 0.02, 2, 3, 1e-12, 0.3)
     assert set(pair_found) == set(kernel.constant_names) - {"inverseEquilibriumOverlap"}
     assert pair_found == {name: getattr(pair, name) for name in pair_found}
     bond = kernel.bond_constants(0.4, "ice", 1e-7, "viscous", 3e-7)

@@ -21,8 +21,9 @@ def test_constants_are_those_of_theory(kernel, kind):
     """Which tests/analysis/test_theory.py holds to the papers' numbers; of a plane R = r and m* = m."""
     material1, radius1, material2, radius2 = kind
     one, other = (theory.Material(*kernel.materials[name]) for name in (material1, material2))
-    found = kernel.constants(*kind, damping=0.02, springs=1e-12)
-    expected = vars(theory.pair_constants(one, radius1, other, radius2, linear_damping=0.02, spring_damping=1e-12))
+    found = kernel.constants(*kind, damping=0.02, springs=1e-12, mixed=0.3)
+    options = dict(linear_damping=0.02, spring_damping=1e-12, mixed_factor=0.3)
+    expected = vars(theory.pair_constants(one, radius1, other, radius2, **options))
     for name, value in expected.items():
         first, *words = name.split("_")
         assert getattr(found, first + "".join(map(str.capitalize, words))) == pytest.approx(value, rel=1e-13), name

@@ -30,9 +30,9 @@ def placed(*arguments):
     return place(parameters, equilibrium_overlap(parameters))
 
 
-@pytest.mark.parametrize("layout", ["mixed", "core-mantle", "halves"])
-def test_grains_of_two_materials_lie_as_the_layout_says_and_every_contact_rests(layout):
-    parameters, (packing, other), _ = placed(*MIXED, f"layout={layout}")
+@pytest.mark.parametrize("layout, factor", [("mixed", 1), ("core-mantle", 1), ("halves", 0.3)])
+def test_grains_of_two_materials_lie_as_the_layout_says_and_every_contact_rests(layout, factor):
+    parameters, (packing, other), _ = placed(*MIXED, f"layout={layout}", f"mixedSurfaceEnergyFactor={factor}")
     assert np.count_nonzero(packing.kind) == np.count_nonzero(other.kind) == 18
     place_of = {"core-mantle": np.linalg.norm(packing.position - packing.position.mean(0), axis=1)}
     along = place_of.get(layout, packing.position[:, 0])
@@ -41,7 +41,8 @@ def test_grains_of_two_materials_lie_as_the_layout_says_and_every_contact_rests(
     pairs = packings.contacts(packing)
     rest = equilibrium_overlaps(packing.radius, pairs, 1e-7, overlaps(parameters.of_each()), packing.kind)
     for (i, j), depth in zip(packing.kind[pairs], rest):
-        assert depth == pytest.approx(constants_of(THEORY[i], 1e-7, THEORY[j], 1e-7).equilibrium_overlap, rel=1e-12)
+        pair = constants_of(THEORY[i], 1e-7, THEORY[j], 1e-7, mixed_factor=factor)
+        assert depth == pytest.approx(pair.equilibrium_overlap, rel=1e-12)
     assert -surface_gaps(packing.position, packing.radius, pairs) == pytest.approx(rest, rel=2e-3)
     assert len(pairs) >= packing.grains - 1
 

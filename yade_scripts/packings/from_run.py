@@ -12,7 +12,7 @@ import numpy as np
 from analysis.runs.files import RunFolderError, array_names, read_bytes
 from analysis.runs.folder import open_run, read_record, read_state, sum_in
 from analysis.runs.format import COMPRESSION, FORMAT
-from yade_scripts.materials import overlaps
+from yade_scripts.materials import MIXED_FACTOR, overlaps
 from yade_scripts.packings import Packing, PackingError, centred, random_stream
 from yade_scripts.packings.packing import OF_CONTACTS, brought_to_rest, largest_cluster, randomly_turned
 from yade_scripts.parameters import NOT_NEGATIVE, POSITIVE, ParameterError, Parameters, one_line, parameter
@@ -64,7 +64,8 @@ def _materials_in(derived):
     if not derived.get("materials"):
         known = {name: float(derived[name]) for name in OF_CONTACTS if name in derived}
         return known, float(derived["equilibriumOverlap"])
-    each = [SimpleNamespace(grainRadius=derived["grainRadius"], **own) for own in derived["materials"]]
+    every = {"grainRadius": derived["grainRadius"], MIXED_FACTOR: derived.get(MIXED_FACTOR, 1.0)}
+    each = [SimpleNamespace(**every, **own) for own in derived["materials"]]
     return {"materials": derived["materials"]}, overlaps(each)
 
 

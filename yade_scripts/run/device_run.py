@@ -78,6 +78,7 @@ class DeviceRun:
             neck=self.given.neck,
             sliding_stiffness_factor=self.given.slidingStiffnessFactor,
             rolling_stiffness_factor=self.given.rollingStiffnessFactor,
+            mixed_surface_energy_factor=self.given.mixedSurfaceEnergyFactor,
         )
         return Start(_grains(self.scene), options, self._steps_to_stop())
 

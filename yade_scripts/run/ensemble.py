@@ -45,7 +45,10 @@ class _Input(ctypes.Structure):
         *((name, ctypes.c_int) for name in "slots pairs contactsOfAGrain intervalAfter".split()),
         *((name, ctypes.c_longlong) for name in "steps changesAt".split()),
         *((name, ctypes.c_double) for name in "dt dtAfter neck linearDamping".split()),
-        *((name, ctypes.c_double) for name in "slidingStiffnessFactor rollingStiffnessFactor skin".split()),
+        *(
+            (name, ctypes.c_double)
+            for name in "slidingStiffnessFactor rollingStiffnessFactor mixedSurfaceEnergyFactor skin".split()
+        ),
         *((name, ctypes.c_void_p) for name in "position velocity spin mass inertia radius materials".split()),
         *((name, ctypes.c_void_p) for name in "kind aggregate touching".split()),
     ]
@@ -133,7 +136,7 @@ class Collision:
         Of LIMITS.
     neck : float
         Of sintered bonds between grains that touch, over their radius; 0: none.
-    linear_damping, sliding_stiffness_factor, rolling_stiffness_factor : float
+    linear_damping, sliding_stiffness_factor, rolling_stiffness_factor, mixed_surface_energy_factor : float
     change : (int, float, int), optional
         After so many steps, at a sample, time_step and interval become these.
 
@@ -156,6 +159,7 @@ class Collision:
         linear_damping=0.0,
         sliding_stiffness_factor=1.0,
         rolling_stiffness_factor=1.0,
+        mixed_surface_energy_factor=1.0,
         change=None,
     ):
         self.library, self._of = library, library._of
@@ -199,6 +203,7 @@ class Collision:
             linearDamping=linear_damping,
             slidingStiffnessFactor=sliding_stiffness_factor,
             rollingStiffnessFactor=rolling_stiffness_factor,
+            mixedSurfaceEnergyFactor=mixed_surface_energy_factor,
             skin=SKIN * radius.min(),
             **change,
             **{name: array.ctypes.data for name, array in arrays.items()},

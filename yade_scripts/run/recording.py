@@ -18,7 +18,7 @@ from yade.wrapper import Omega
 
 import contact_law
 from analysis.runs.format import Quantity, RunKind, same
-from yade_scripts.materials import PROPERTIES, derived_grains, derived_materials
+from yade_scripts.materials import MIXED_FACTOR, PROPERTIES, derived_grains, derived_materials
 from yade_scripts.parameters import one_line
 from yade_scripts.run import checkpoint
 from yade_scripts.run import recorder as sampling
@@ -186,7 +186,8 @@ class Recording(sampling.Recorder):
         return self._materials.index(own)
 
     def _material_of(self, name, **properties):
-        return SimpleNamespace(material=name, grainRadius=self._radius, **properties)
+        every = {"grainRadius": self._radius, MIXED_FACTOR: _mixed_factor(Omega().engines)}
+        return SimpleNamespace(material=name, **every, **properties)
 
     def _own(self, state):
         """The script's series, whose names are those of the first row."""
@@ -258,6 +259,12 @@ def _fused(engines):
 
 def _is_fused(engines):
     return bool(_fused(engines))
+
+
+def _mixed_factor(engines):
+    """That of the fused engine, or of the functor that makes contacts."""
+    functors = [f for engine in engines if hasattr(engine, "physDispatcher") for f in engine.physDispatcher.functors]
+    return next((getattr(of, MIXED_FACTOR) for of in (*_fused(engines), *functors) if hasattr(of, MIXED_FACTOR)), 1.0)
 
 
 def _has_the_law(engine):

@@ -9,7 +9,7 @@ from yade import utils
 from yade.wrapper import Omega
 
 import contact_law  # noqa: F401  (puts the plugin's classes into yade.wrapper)
-from yade_scripts.materials import OF_MATERIAL, OF_SPRINGS
+from yade_scripts.materials import OF_MATERIAL, OF_PAIRS
 from yade_scripts.run import recorder as sampling
 from yade_scripts.run.parameters import SPRINGS
 
@@ -33,7 +33,7 @@ def materials_of(grains):
 def pair_constants(grains, neck=0.0, linearDamping=0.0):
     """The plugin's constants (SI) of a contact of two grains; under 'bond' those of a sintered one, or None.
 
-    grains: materials.GrainParameters with the OF_SPRINGS."""
+    grains: materials.GrainParameters with the OF_PAIRS."""
     two = 2 * (material_of(grains), grains.grainRadius)
     constants = {**_functor(grains, linearDamping).pairConstants(*two), "bond": None}
     if neck:
@@ -50,7 +50,7 @@ def plane_constants(grains, linearDamping=0.0):
 
 def _functor(grains, damping):
     return yade.Ip2_JKRMat_JKRMat_JKRWadaPhys(
-        linearDamping=damping, **{name: getattr(grains, name) for name in OF_SPRINGS}
+        linearDamping=damping, **{name: getattr(grains, name) for name in OF_PAIRS}
     )
 
 
@@ -91,7 +91,7 @@ def start(scene, schedule, recorder):
     omega.dt = scene.time_step
     sampling.current = recorder
     runner = yade.PyRunner(command=sampling.COMMAND, iterPeriod=schedule.interval, initRun=True)
-    law = {**{name: getattr(parameters, name) for name in OF_SPRINGS}, **scene.law}
+    law = {**{name: getattr(parameters, name) for name in OF_PAIRS}, **scene.law}
     contacts = {"limit": parameters.limit, **{name: bool(getattr(parameters, name)) for name in SPRINGS}}
     if parameters.engine == "functors":
         omega.engines = functor_engines(parameters.grainRadius, runner, contacts, **law)
