@@ -27,7 +27,7 @@ from ..runs.measured import UNLIKE
 from ..theory import ICE
 from .columns import NotMeasured, group
 from .comparison import Row
-from .estimates import Estimate, beside, ending, estimate, fraction
+from .estimates import Estimate, average, beside, ending, estimate, fraction, zero_of_fit
 from .figures import COLOURS, plain_ticks, points
 from .study import Study
 
@@ -62,12 +62,6 @@ def prepared(runs):
 # Estimates. Every run has a pair of its own, so that the jackknife's error of a mean is that of independent values.
 
 
-def average(values):
-    """Estimate of the mean of independent values (n,), without NaN."""
-    values = values.dropna()
-    return Estimate(values.mean(), values.std() / len(values) ** 0.5 if len(values) > 1 else None, len(values))
-
-
 def less(one, other):
     """Estimate of one less another, of different runs."""
     error = None if one.error is None or other.error is None else hypot(one.error, other.error)
@@ -92,11 +86,8 @@ def bouncing_exponent(runs):
 def critical_speed(runs):
     """Speed [v_break] above which targets lose more than they gain: where the growth efficiency (N_largest -
     N_target)/N_projectile, linear in ln v over GROWING, falls through 0."""
-    if runs.speed.nunique() < 3:
-        return np.nan
     q = runs.mass_ratio
-    slope, level = np.polyfit(np.log(runs.speed), growth_efficiency(runs.largest * (1.0 + q), 1.0, q), 1)
-    return np.exp(-level / slope)
+    return zero_of_fit(runs.speed, growth_efficiency(runs.largest * (1.0 + q), 1.0, q))
 
 
 def rows(runs):

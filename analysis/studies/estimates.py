@@ -80,6 +80,12 @@ def mean(values):
     return of
 
 
+def average(values):
+    """Estimate of the mean of independent values (n,), without NaN."""
+    values = values.dropna()
+    return Estimate(values.mean(), values.std() / len(values) ** 0.5 if len(values) > 1 else None, len(values))
+
+
 def beside(statistic, one, other, of=np.subtract):
     """Estimate of of(statistic(one), statistic(other)), a difference or a ratio: of the pairs that are in both tables
     of runs, or of all where none is."""
@@ -120,6 +126,15 @@ def threshold(x, y):
         return math.nan
     k = falls[0]
     return x[k] + (x[k + 1] - x[k]) * y[k] / (y[k] - y[k + 1])
+
+
+def zero_of_fit(x, y):
+    """x at which y (K,), fitted linear in ln x, is 0; NaN with fewer than three values of x (K,). Of growth efficiency
+    against velocity: above it targets lose more than they gain."""
+    if len(np.unique(x)) < 3:
+        return math.nan
+    slope, level = np.polyfit(np.log(x), y, 1)
+    return float(np.exp(-level / slope))
 
 
 def exponent(x, y):

@@ -35,6 +35,7 @@ def serve(connection):
     with suppress(Exception):  # a plugin that isn't built: each run says so itself
         for name in LOADED:
             importlib.import_module(name)
+        sys.modules["yade_scripts.packings.ballistic"].bpca(3, 1e-7, 0.0, seed=1)  # numba loads what it needs at a call
     gc.freeze()  # what is loaded is not garbage, and memory that isn't looked at stays shared with the runs
     with suppress(EOFError, ConnectionError):
         while True:

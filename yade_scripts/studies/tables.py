@@ -16,7 +16,7 @@ from analysis.printable import meant
 from yade_scripts.parameters import InputError
 from yade_scripts.run.table import write as write_table
 
-STUDIES = ("atlas", "compressed", "compression", "elastoplastic", "formulas", "sintered", "viscous")
+STUDIES = ("atlas", "axes", "compressed", "compression", "elastoplastic", "formulas", "sintered", "viscous")
 EXAMPLES = ("demo", "seeds")  # which no module makes
 
 

@@ -1,0 +1,140 @@
+"""What the atlas leaves out: collisions of aggregates as they are, and of the same pairs with one thing changed."""
+
+import re
+
+import numpy as np
+
+from ..atlas.variables import breaking_velocity
+from ..figures.style import letter, panels, styled
+from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
+from ..runs.measured import outcome_of_run
+from ..theory import ICE
+from .columns import CLOSURE, OUTCOME, VELOCITY, Column, NotMeasured, group, one, parameter
+from .comparison import Row
+from .estimates import average, beside, estimate, zero_of_fit
+from .figures import COLOURS, plain_ticks, points
+from .study import Study
+
+NAME = re.compile(r"(\d+)-([a-z]+)-(.+)")  # of a run folder: pair, axis, level
+BASE = "base"
+AXES = {  # axis: its title
+    "drag": "drag: T_vis",
+    "gamma": "surface energy [J/m²]",
+    "spin": "both spin [rad/s]",
+    "radii": "radii",
+    "materials": "ice and silicate",
+    "necks": "sintered necks [r]",
+    "rolling": "critical rolling displacement",
+    "springs": "a spring left out",
+}
+SPEEDS = (2.0, 5.0, 8.0, 12.0, 25.0)  # v_break: limits of bands
+FAST = 5.0  # v_break: below, aggregates stick
+HARDLY = (0.75, 1.33)  # of a critical velocity: as in the atlas
+
+
+def _named(run, row):
+    found = NAME.fullmatch(run.path.name)
+    if not found:
+        raise NotMeasured(f"{run.path}: no run of this study, whose names are NUMBER-AXIS-LEVEL")
+    number, axis, level = found.groups()
+    return int(number), axis, level
+
+
+MEASURED = (
+    group(
+        _named,
+        Column("number", "", "of the pair of aggregates", "i"),
+        Column("axis", "", "what is changed; base: nothing", "O"),
+        Column("level", "", "to what", "O"),
+    ),
+    parameter("packing", "", "structure of both aggregates", "O"),
+    VELOCITY,
+    parameter("impact", "", "impact parameter over the sum of the characteristic radii"),
+    OUTCOME,
+    one("growth", "", "growth efficiency by mass", lambda run: float(outcome_of_run(run).growth_efficiency)),
+    CLOSURE,
+)
+
+
+def prepared(runs):
+    """The table with `speed` [v_break], that of the pair unchanged; `stuck` and `grown`, NaN where they did not meet or
+    are undecided; `more` and `gain`: these less those of the pair unchanged."""
+    known = ~runs.outcome.isin((NEVER_MET, UNDECIDED))
+    runs = runs.assign(stuck=(runs.outcome == STICKING).astype(float).where(known), grown=runs.growth.where(known))
+    base = runs[runs.axis == BASE].set_index("number")
+    of_base = lambda name: runs.number.map(base[name])
+    speed = of_base("velocity") / breaking_velocity(ICE, 1e-7)
+    return runs.assign(speed=speed, more=runs.stuck - of_base("stuck"), gain=runs.grown - of_base("grown"))
+
+
+def critical_speed(runs):
+    """Speed [v_break] at which the mean growth efficiency, linear in ln v from FAST on, falls through 0."""
+    runs = runs[(runs.speed > FAST) & runs.grown.notna()]
+    return zero_of_fit(runs.speed, runs.grown)
+
+
+def rows(runs):
+    """Critical velocities over that of the same pairs unchanged, and how the fraction that sticks changes."""
+    base = runs[(runs.axis == BASE) & runs.speed.notna()]
+    for packing, own in base.groupby("packing"):
+        yield Row(f"critical velocity of {packing}, nothing changed [v_break]", estimate(critical_speed, own))
+    changed = runs[runs.axis != BASE]
+    for (axis, level), own in sorted(changed.groupby(["axis", "level"], sort=False), key=_place):
+        what = f"{AXES[axis]}, {level}"
+        found = beside(critical_speed, own, base, np.divide)
+        paper = (HARDLY, "hardly another", "A22") if axis == "drag" else ()
+        paper = (HARDLY, "hardly another", "A22b") if axis == "rolling" else paper
+        yield Row(f"critical velocity over that unchanged: {what}", found, *paper)
+        for words, part in (("below", own.speed < FAST), ("above", own.speed >= FAST)):
+            yield Row(f"change of the fraction that sticks, {words} {FAST:g} v_break: {what}", average(own.more[part]))
+        yield Row(f"change of the growth efficiency, above {FAST:g} v_break: {what}", average(own.gain[~part]))
+
+
+def _place(group):
+    (axis, level), _ = group
+    return list(AXES).index(axis), level
+
+
+def figures(runs):
+    """Changes of the fraction that sticks."""
+    changed = runs[(runs.axis != BASE) & runs.more.notna()]
+    if len(changed):
+        caption = "Fraction that sticks, less that of the same pairs unchanged, with standard errors."
+        yield "changes", caption, _changes(changed)
+
+
+@styled
+def _changes(runs):
+    """A panel for each axis: the change against the speed."""
+    figure, axes = panels(2, 4, 3.3, 2.9)
+    for place, (axis, title) in zip(axes.ravel(), AXES.items()):
+        own = runs[runs.axis == axis]
+        for level, colour in zip(sorted(own.level.unique()), COLOURS):
+            part = own[own.level == level]
+            bands = part.groupby(np.digitize(part.speed, SPEEDS[1:-1]))
+            points(place, bands.speed.mean(), [average(band.more) for _, band in bands], colour, level, line="-")
+        place.axhline(0.0, color="0.6", lw=0.8, zorder=0)
+        place.set(xscale="log", ylim=(-0.75, 0.75))
+        plain_ticks(place, "x")
+        place.set_title(title, fontsize=10)
+        place.legend(frameon=False, fontsize=8, loc="lower left")
+    for place in axes[-1]:
+        place.set_xlabel("$v/v_{break}$")
+    for place in axes[:, 0]:
+        place.set_ylabel("change of $p_{stick}$")
+    letter(axes, "")
+    return figure
+
+
+STUDY = Study(
+    title="What the atlas leaves out",
+    question="Do drag, surface energy, spin, unlike radii, a second material, sintered necks, rolling or a missing "
+    "spring change what becomes of a collision?",
+    values={"grains": 100},
+    key=("number", "axis", "level"),
+    measured=MEASURED,
+    pair=("number",),
+    rows=rows,
+    figures=figures,
+    prepared=prepared,
+)
