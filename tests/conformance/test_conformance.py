@@ -14,6 +14,7 @@ from answers import SUITE, answer
 SAMPLE = (
     "equilibrium hysteresis sliding rolling twisting two-at-once under-load turning-slip bond-tension bond-shear chain"
 )
+FREE = "collision bond-break chain"  # others: make conformance
 CASES = {case["id"]: case for case in SUITE["cases"]}
 LEVELS = 2  # of three
 
@@ -37,6 +38,14 @@ def test_this_law_agrees(code):
     for name in SAMPLE.split():
         found = check.compare_case(CASES[name], answer(CASES[name], yade_codes.series_of, LEVELS), SUITE)
         assert found["word"] == "agrees", (name, found["why"])
+
+
+@pytest.mark.parametrize("case", FREE.split())
+def test_the_ensemble_agrees_where_grains_are_free(case):
+    import ensemble_code
+
+    found = check.compare_case(CASES[case], answer(CASES[case], ensemble_code.series_of), SUITE)
+    assert found["word"] == "agrees", found["why"]
 
 
 def results(case="sliding"):
