@@ -68,7 +68,7 @@ def prepared(runs):
 
 
 def critical_speed(runs):
-    """Speed [v_break] at which the mean growth efficiency, linear in ln v from FAST on, falls through 0."""
+    """Speed [v_break] above which targets lose more than they gain, by the runs from FAST on."""
     runs = runs[(runs.speed > FAST) & runs.grown.notna()]
     return zero_of_fit(runs.speed, runs.grown)
 
@@ -85,9 +85,10 @@ def rows(runs):
         paper = (HARDLY, "hardly another", "A22") if axis == "drag" else ()
         paper = (HARDLY, "hardly another", "A22b") if axis == "rolling" else paper
         yield Row(f"critical velocity over that unchanged: {what}", found, *paper)
-        for words, part in (("below", own.speed < FAST), ("above", own.speed >= FAST)):
-            yield Row(f"change of the fraction that sticks, {words} {FAST:g} v_break: {what}", average(own.more[part]))
-        yield Row(f"change of the growth efficiency, above {FAST:g} v_break: {what}", average(own.gain[~part]))
+        slow, fast = own[own.speed < FAST], own[own.speed >= FAST]
+        for words, part in (("below", slow), ("above", fast)):
+            yield Row(f"change of the fraction that sticks, {words} {FAST:g} v_break: {what}", average(part.more))
+        yield Row(f"change of the growth efficiency, above {FAST:g} v_break: {what}", average(fast.gain))
 
 
 def _place(group):

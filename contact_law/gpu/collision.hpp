@@ -100,9 +100,11 @@ namespace gpu {
 
 		Sums* sums;
 		Sample* sample;
+		std::size_t sizeLookedAt; // of the arrays that are placed first [bytes]
 	};
 
-	// Gives each array of a collision its place from `begin` on (0: measures); returns the size of all [bytes].
+	// Gives each array of a collision its place from `begin` on (0: measures), first those that are looked at while it runs; returns the
+	// size of all [bytes].
 	inline std::size_t place(Collision& c, char* begin)
 	{
 		std::size_t size = 0;
@@ -113,7 +115,12 @@ namespace gpu {
 		};
 		const auto vectors = [&](Vectors& to, std::size_t count) { array(to.x, count), array(to.y, count), array(to.z, count); };
 		const std::size_t grains = c.room.grains, slots = c.room.slots, pairs = c.room.pairs;
-		for (Vectors* of : { &c.position, &c.velocity, &c.spin, &c.listed, &c.velocityBefore, &c.velocityNow, &c.spinNow })
+		for (Vectors* of : { &c.position, &c.velocityNow, &c.spinNow })
+			vectors(*of, grains);
+		array(c.first, slots), array(c.second, slots), array(c.state, slots), array(c.normalForce, slots);
+		array(c.sample, c.room.samples);
+		c.sizeLookedAt = size;
+		for (Vectors* of : { &c.velocity, &c.spin, &c.listed, &c.velocityBefore })
 			vectors(*of, grains);
 		for (double** of : { &c.mass, &c.inertia, &c.radius })
 			array(*of, grains);
@@ -121,16 +128,15 @@ namespace gpu {
 			array(*of, grains);
 		array(c.slotsOfGrain, grains * c.room.contactsOfAGrain);
 		array(c.material, c.room.kinds);
-		array(c.first, slots), array(c.second, slots), array(c.state, slots), array(c.movedTo, slots);
+		array(c.movedTo, slots);
 		for (Vectors* of :
 		        { &c.pointer1, &c.pointer2, &c.force, &c.torque1, &c.torque2, &c.forceBefore, &c.torqueBefore1, &c.torqueBefore2 })
 			vectors(*of, slots);
-		for (double** of : { &c.twist, &c.rest, &c.dragBefore, &c.normalForce, &c.copy })
+		for (double** of : { &c.twist, &c.rest, &c.dragBefore, &c.copy })
 			array(*of, slots);
 		array(c.constants, c.uniform ? 0 : slots), array(c.bondConstants, c.uniform ? 0 : c.bonds);
 		array(c.pairFirst, pairs), array(c.pairSecond, pairs), array(c.pairSlot, pairs);
 		array(c.sums, mostThreads);
-		array(c.sample, c.room.samples);
 		return size;
 	}
 

@@ -230,7 +230,7 @@ int ensemble_run(void* const* collisions, int count, const long long* steps)
 int collision_read(void* collision, long long* numbers)
 {
 	Held& held = *static_cast<Held*>(collision);
-	if (!download(held.copy.data(), held.device, held.size)) return 0;
+	if (!download(held.copy.data(), held.device, headSize + held.head().sizeLookedAt)) return 0;
 	const Collision& c = held.read();
 	const long long found[] = { c.step, c.stepsLeft, c.samples, c.slots, (long long)(c.failure) };
 	std::copy(std::begin(found), std::end(found), numbers);
@@ -265,12 +265,12 @@ void collision_samples(void* collision, double* rows)
 				*rows++ = sum;
 	}
 }
-// The whole state, for a checkpoint: of the same build and device.
+// The whole state now, for a checkpoint: of the same build and device.
 long long collision_size(void* collision) { return static_cast<Held*>(collision)->size; }
-void collision_save(void* collision, char* to)
+int collision_save(void* collision, char* to)
 {
 	const Held& held = *static_cast<Held*>(collision);
-	std::memcpy(to, held.copy.data(), held.size);
+	return download(to, held.device, held.size);
 }
 void* collision_resume(const char* from, long long size)
 {

@@ -255,9 +255,9 @@ class Collision:
         return dict(zip(names, rows.T, strict=True))
 
     def save(self):
-        """The whole state as it was read last, bytes, for resumed() with the same library."""
+        """The whole state, bytes, for resumed() with the same library."""
         to = np.empty(self._of.collision_size(self.handle), dtype=np.uint8)
-        self._of.collision_save(self.handle, _pointer(to))
+        self.library.require(self._of.collision_save(self.handle, _pointer(to)))
         return to.tobytes()
 
     def resumed(self, saved):
