@@ -131,7 +131,7 @@ all: deps
 	@$(MAKE) $(if $(findstring j,$(filter-out --%,$(MAKEFLAGS))),,-j$$(nproc)) build
 	@$(MAKE) tried
 
-build: $(PLUGIN) build/overlay build/gpu/libprocessor.so
+build: $(PLUGIN) build/overlay build/gpu/libprocessor.so build/gpu/libprocessor-whole.so
 	@echo "contact_law is built: $(PLUGIN)"
 
 # Both do nothing with a YADE that is described.
@@ -188,13 +188,14 @@ build/overlay: Makefile build/yade.list
 
 # Many collisions at once, by one source for processors and GPUs (DEVICE: nvcc's name of the GPU's kind).
 DEVICE ?= sm_90
-build/gpu/libprocessor.so: contact_law/gpu/ensemble.cu build/flags.list
-	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) -shared -x c++ $<)
-gpu: build/gpu/libdevice.so
+WHOLE = $(if $(findstring whole,$@),-DWHOLE)
+build/gpu/libprocessor.so build/gpu/libprocessor-whole.so: contact_law/gpu/ensemble.cu build/flags.list
+	$(call COMPILE,$(CXX) $(ENGINE_FLAGS) $(WHOLE) -shared -x c++ $<)
+gpu: build/gpu/libdevice.so build/gpu/libdevice-whole.so
 NVCC = nvcc -O3 -std=c++17 -arch=$(DEVICE) --expt-relaxed-constexpr -diag-suppress 20091 -Xcompiler -fPIC -shared
 OF_THE_DEVICE := contact_law/gpu/ensemble.cu $(wildcard contact_law/gpu/*.hpp contact_law/kernel/*.hpp)
-build/gpu/libdevice.so: $(OF_THE_DEVICE)
-	$(call COMPILE,$(NVCC) -Xptxas -v $< 2> $(@D)/resources.txt)
+build/gpu/libdevice.so build/gpu/libdevice-whole.so: $(OF_THE_DEVICE)
+	$(call COMPILE,$(NVCC) $(WHOLE) -Xptxas -v $< 2> $(@D)/resources$(if $(WHOLE),-whole).txt)
 # Of other numbers: THREADS of a block x BLOCKS of a multiprocessor.
 build/gpu/libdevice-%.so: $(OF_THE_DEVICE)
 	$(call COMPILE,$(NVCC) -DTHREADS=$(word 1,$(subst x, ,$*)) -DBLOCKS=$(word 2,$(subst x, ,$*)) $<)
@@ -405,4 +406,4 @@ deps:
 clean:
 	rm -rf build
 
--include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d build/gpu/libprocessor.d
+-include $(OBJECTS:.o=.d) $(HARNESS_OBJECTS:.o=.d) $(PRECOMPILED).d build/gpu/libprocessor.d build/gpu/libprocessor-whole.d

@@ -1,4 +1,4 @@
-/* All of one collision, in one piece of memory that a block of threads works on: grains, contacts, pairs of neighbours, ledger.
+/* All of one collision, in one piece of memory that a team of threads works on: grains, contacts, pairs of neighbours, ledger.
  * A slot is a sintered bond or a contact; the first slots belong to the bonds, each with the contact that may follow it. */
 #pragma once
 #include "block.hpp"
@@ -32,6 +32,7 @@ namespace gpu {
 	// What a sample holds beside the energies: sums over grains with x > 0 and x < 0, for d and v (A24 eqs 10-13).
 	struct Side {
 		double grains, position, velocity;
+		GPU void operator+=(const Side& other) { grains += other.grains, position += other.position, velocity += other.velocity; }
 	};
 	struct Sample {
 		double time;
@@ -47,6 +48,15 @@ namespace gpu {
 		StoredEnergy<double> stored;
 		double kinetic, contacts, between;
 		Side right, left;
+
+		GPU void operator+=(const Sums& other)
+		{
+			lost += other.lost, stored += other.stored, kinetic += other.kinetic;
+			formed += other.formed, broken += other.broken, contacts += other.contacts, between += other.between;
+			for (int mode = 0; mode < bondModeCount; ++mode)
+				brokenBonds[mode] += other.brokenBonds[mode];
+			right += other.right, left += other.left;
+		}
 	};
 
 	struct Collision {
@@ -56,8 +66,8 @@ namespace gpu {
 		long long stepsLeft, step;
 		LimitRule limit;
 		PairOptions options;
-		double dt, neck, skin;
-		long long changesAt; // at this step, a sample's, dt and interval become these; 0: never
+		double dt, neck, skin, cellWidth; // of cells: at least as wide as the largest distance of a pair
+		long long changesAt;              // at this step, a sample's, dt and interval become these; 0: never
 		int intervalAfter;
 		double dtAfter;
 		bool uniform; // all pairs have `common`, all bonds `commonBond`
@@ -69,7 +79,7 @@ namespace gpu {
 		long long changed; // step and time since which dt is what it is
 		double timeOfChange;
 		Failure failure;
-		bool born, outdated; // whether pairs touch that did not; whether the list of pairs may miss one
+		bool born, outdated, tooFast; // whether pairs touch that did not; the list of pairs may miss one; a grain moves too far
 		Ranks ranks;
 
 		// ---- grains ----
@@ -97,11 +107,22 @@ namespace gpu {
 		// ---- pairs of neighbours ----
 		int *pairFirst, *pairSecond, *pairSlot; // pairSlot: -1, or the latest slot that it had
 		int* pairsOfGrain;
+		// By hash of the cell: where the grains of a bucket begin, how many have their place, and all grains by bucket.
+		int *bucketStart, *bucketFilled, *grainsByBucket;
 
-		Sums* sums;
+		Sums *sums, *sumsOfGroup;
 		Sample* sample;
 		std::size_t sizeLookedAt; // of the arrays that are placed first [bytes]
 	};
+
+	// A power of two.
+	ON_GPU inline int bucketsOf(int grains)
+	{
+		int buckets = 64;
+		while (buckets < 2 * grains)
+			buckets *= 2;
+		return buckets;
+	}
 
 	// Gives each array of a collision its place from `begin` on (0: measures), first those that are looked at while it runs; returns the
 	// size of all [bytes].
@@ -136,7 +157,9 @@ namespace gpu {
 			array(*of, slots);
 		array(c.constants, c.uniform ? 0 : slots), array(c.bondConstants, c.uniform ? 0 : c.bonds);
 		array(c.pairFirst, pairs), array(c.pairSecond, pairs), array(c.pairSlot, pairs);
-		array(c.sums, mostThreads);
+		array(c.bucketStart, bucketsOf(c.room.grains)), array(c.bucketFilled, bucketsOf(c.room.grains)),
+		        array(c.grainsByBucket, grains);
+		array(c.sums, mostThreads), array(c.sumsOfGroup, mostGroups);
 		return size;
 	}
 

@@ -1,9 +1,6 @@
 /* Many collisions side by side, a block of threads each: the library that yade_scripts/run/ensemble.py calls. nvcc compiles it for a GPU; g++ (-x c++) for
- * processors, where a thread takes one collision after another. */
+ * processors, where a thread takes one collision after another. With -DWHOLE large ones, one after another: all blocks, or threads, work on each. */
 #include "step.hpp"
-#ifndef __CUDACC__
-#include <omp.h>
-#endif
 #include <cstring>
 #include <memory>
 #include <new>
@@ -53,9 +50,19 @@ namespace gpu {
 		{
 			return succeeded(cudaMemcpy(to, from.data, size, cudaMemcpyDeviceToHost));
 		}
-		__global__ void __launch_bounds__(mostThreads, blocksSideBySide) runAll(const Task* tasks)
+		__global__ void __launch_bounds__(threadsOfGroup, blocksSideBySide) runAll(const Task* tasks)
 		{
+#ifdef WHOLE
+			runAny(*tasks->collision, tasks->steps);
+#else
 			runAny(*tasks[blockIdx.x].collision, tasks[blockIdx.x].steps);
+#endif
+		}
+		int multiprocessors()
+		{
+			int found = 0;
+			cudaDeviceGetAttribute(&found, cudaDevAttrMultiProcessorCount, 0);
+			return found;
 		}
 		// Launches of several threads are side by side, and beside what is copied meanwhile.
 		bool launch(const std::vector<Task>& tasks)
@@ -65,7 +72,16 @@ namespace gpu {
 			const std::size_t size = tasks.size() * sizeof(Task);
 			Memory list(size);
 			if (!list.data || !upload(list, tasks.data(), size)) return false;
-			runAll<<<int(tasks.size()), mostThreads, 0, stream>>>(reinterpret_cast<const Task*>(list.data));
+			const Task* each = reinterpret_cast<const Task*>(list.data);
+#ifdef WHOLE
+			const int blocks = std::min(multiprocessors() * blocksSideBySide, mostGroups); // which wait for each other
+			for (std::size_t k = 0; k < tasks.size(); ++k, ++each) {
+				void* given[] = { &each };
+				if (!succeeded(cudaLaunchCooperativeKernel(runAll, blocks, threadsOfGroup, given, 0, stream))) return false;
+			}
+#else
+			runAll<<<int(tasks.size()), threadsOfGroup, 0, stream>>>(each);
+#endif
 			return succeeded(cudaGetLastError()) && succeeded(cudaStreamSynchronize(stream));
 		}
 		std::string deviceName()
@@ -73,12 +89,7 @@ namespace gpu {
 			cudaDeviceProp properties;
 			return succeeded(cudaGetDeviceProperties(&properties, 0)) ? properties.name : "";
 		}
-		int computedAtOnce()
-		{
-			int multiprocessors = 0;
-			cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, 0);
-			return multiprocessors * blocksSideBySide;
-		}
+		int computedAtOnce() { return mostGroups > 1 ? 1 : multiprocessors() * blocksSideBySide; }
 #else
 		thread_local std::string error;
 
@@ -95,14 +106,20 @@ namespace gpu {
 		bool download(void* to, const Memory& from, std::size_t size) { return std::memcpy(to, from.data, size); }
 		bool launch(const std::vector<Task>& tasks)
 		{
+#ifdef WHOLE
+#pragma omp parallel num_threads(std::min(omp_get_max_threads(), mostThreads))
+			for (const Task& task : tasks)
+				runAny(*task.collision, task.steps);
+#else
 			const int most = int(std::min<std::size_t>(tasks.size(), omp_get_max_threads()));
 #pragma omp parallel for schedule(dynamic, 1) num_threads(most)
 			for (const Task& task : tasks)
 				runAny(*task.collision, task.steps);
+#endif
 			return true;
 		}
 		std::string deviceName() { return "processor"; }
-		int computedAtOnce() { return omp_get_max_threads(); }
+		int computedAtOnce() { return mostGroups > 1 ? 1 : omp_get_max_threads(); }
 #endif
 
 		// A collision in the device's memory: the structure, then its arrays.
@@ -189,6 +206,7 @@ void* collision_start(const CollisionInput* given)
 	c.bonds = g.bonded ? g.contacts : 0, c.slots = g.contacts, c.stepsLeft = g.steps;
 	c.changesAt = g.changesAt, c.intervalAfter = g.intervalAfter, c.dtAfter = g.dtAfter;
 	c.dt = g.dt, c.neck = g.neck, c.skin = g.skin;
+	c.cellWidth = 2 * *std::max_element(g.radius, g.radius + g.grains) + g.skin;
 	c.options = { g.linearDamping, g.slidingStiffnessFactor, g.rollingStiffnessFactor, 0, g.mixedSurfaceEnergyFactor };
 	c.uniform = true;
 	for (int k = 1; k < g.grains; ++k)

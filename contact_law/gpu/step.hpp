@@ -1,4 +1,4 @@
-/* A collision's steps, by a block of threads. Contacts write their kicks, then each grain adds up those of its contacts in a fixed order;
+/* A collision's steps, by a team of threads. Contacts write their kicks, then each grain adds up those of its contacts in a fixed order;
  * velocities are of half a step before the positions, as the engine has them (MODEL.md, "The integrator and the ledger"). */
 #pragma once
 #include "collision.hpp"
@@ -150,7 +150,7 @@ namespace gpu {
 	{
 		const int most = c.room.contactsOfAGrain;
 		EACH(i, c.grains) c.contactsOfGrain[i] = 0;
-		BARRIER();
+		barrier();
 		EACH(slot, c.slots)
 		{
 			if (c.state[slot] == Unused) continue;
@@ -163,7 +163,7 @@ namespace gpu {
 			c.slotsOfGrain[i * most + ofFirst] = slot + 1;
 			c.slotsOfGrain[j * most + ofSecond] = -(slot + 1);
 		}
-		BARRIER();
+		barrier();
 		if (c.failure != Failure::None) return;
 		EACH(i, c.grains)
 		{
@@ -176,7 +176,7 @@ namespace gpu {
 				own[to] = one;
 			}
 		}
-		BARRIER();
+		barrier();
 	}
 
 	// Contacts that form get the next slots, in the order of the pairs.
@@ -207,7 +207,7 @@ namespace gpu {
 			else
 				c.slots = before + more;
 		}
-		BARRIER();
+		barrier();
 		if (c.failure == Failure::None) listSlotsOfGrains(c);
 	}
 
@@ -217,16 +217,16 @@ namespace gpu {
 	{
 		T* copy = reinterpret_cast<T*>(c.copy);
 		EACH(slot, c.slots) if (c.movedTo[slot] >= 0) copy[c.movedTo[slot]] = values[slot];
-		BARRIER();
+		barrier();
 		EACH(slot, c.slots) values[slot] = copy[slot];
-		BARRIER();
+		barrier();
 	}
 
 	// Closes the gaps that broken contacts have left. Kicks are not moved: the next are made before they are read.
 	GPU inline void closeGaps(Collision& c)
 	{
 		EACH(slot, c.slots) c.movedTo[slot] = -1;
-		BARRIER();
+		barrier();
 		const auto isKept = [&](int slot) { return int(slot < c.bonds || c.state[slot] >= Touching); };
 		const int kept = addUp(c.ranks, c.slots, isKept, [&](int slot, int rank) { c.movedTo[slot] = rank; });
 		if (kept == c.slots) return;
@@ -235,7 +235,7 @@ namespace gpu {
 			moveSlots(c, of->x), moveSlots(c, of->y), moveSlots(c, of->z);
 		moveSlots(c, c.twist), moveSlots(c, c.dragBefore);
 		FIRST { c.slots = kept; }
-		BARRIER();
+		barrier();
 		if (!c.uniform) EACH(slot, c.slots) deriveConstants(c, slot);
 	}
 
@@ -248,23 +248,70 @@ namespace gpu {
 		return -1;
 	}
 
-	// Every pair of grains nearer than the skin, by rising first grain.
+	struct Cell {
+		int x, y, z;
+		GPU bool operator==(const Cell& other) const { return x == other.x && y == other.y && z == other.z; }
+		GPU int bucket(int buckets) const
+		{
+			return int((unsigned(x) * 73856093u ^ unsigned(y) * 19349663u ^ unsigned(z) * 83492791u) & unsigned(buckets - 1));
+		}
+	};
+	GPU inline Cell cellOf(const Collision& c, int i)
+	{
+		const Vector x = (1 / c.cellWidth) * c.position[i];
+		return { int(std::floor(x.x)), int(std::floor(x.y)), int(std::floor(x.z)) };
+	}
+
+	GPU inline void sortIntoBuckets(Collision& c)
+	{
+		const int buckets = bucketsOf(c.grains);
+		EACH(bucket, buckets) c.bucketFilled[bucket] = 0;
+		barrier();
+		EACH(i, c.grains) takeNext(c.bucketFilled[cellOf(c, i).bucket(buckets)]);
+		EACH(bucket, buckets) c.bucketStart[bucket] = 0;
+		barrier();
+		addUp(
+		        c.ranks, buckets, [&](int bucket) { return c.bucketFilled[bucket]; },
+		        [&](int bucket, int start) { c.bucketStart[bucket] = start; });
+		EACH(bucket, buckets) c.bucketFilled[bucket] = 0;
+		barrier();
+		EACH(i, c.grains)
+		{
+			const int bucket = cellOf(c, i).bucket(buckets);
+			c.grainsByBucket[c.bucketStart[bucket] + takeNext(c.bucketFilled[bucket])] = i;
+		}
+		barrier();
+	}
+
+	// Calls see(j) for every later grain j that is nearer to grain i than the skin, in no order.
+	template <class See> GPU inline void eachNear(const Collision& c, int i, const See& see)
+	{
+		const int buckets = bucketsOf(c.grains);
+		const Cell own = cellOf(c, i);
+		for (int k = 0; k < 27; ++k) {
+			const Cell cell { own.x + k % 3 - 1, own.y + k / 3 % 3 - 1, own.z + k / 9 - 1 };
+			const int bucket = cell.bucket(buckets);
+			for (int at = c.bucketStart[bucket], end = at + c.bucketFilled[bucket]; at < end; ++at) {
+				const int j = c.grainsByBucket[at];
+				const Vector apart = c.position[i] - c.position[j];
+				const double reach = c.radius[i] + c.radius[j] + c.skin;
+				if (j > i && dot(apart, apart) < reach * reach && cellOf(c, j) == cell) see(j);
+			}
+		}
+	}
+
+	// Every pair of grains nearer than the skin, by rising first, then second grain.
 	GPU inline void listPairs(Collision& c)
 	{
-		const auto isNear = [&](int i, int j) {
-			const Vector apart = c.position[i] - c.position[j];
-			const double reach = c.radius[i] + c.radius[j] + c.skin;
-			return dot(apart, apart) < reach * reach;
-		};
+		sortIntoBuckets(c);
 		EACH(i, c.grains)
 		{
 			int count = 0;
-			for (int j = i + 1; j < c.grains; ++j)
-				count += isNear(i, j);
+			eachNear(c, i, [&](int) { ++count; });
 			c.pairsOfGrain[i] = count;
 			c.listed.set(i, c.position[i]);
 		}
-		BARRIER();
+		barrier();
 		const int all = addUp(
 		        c.ranks, c.grains, [&](int i) { return c.pairsOfGrain[i]; }, [&](int i, int start) { c.pairsOfGrain[i] = start; });
 		if (all > c.room.pairs) {
@@ -273,18 +320,23 @@ namespace gpu {
 		}
 		EACH(i, c.grains)
 		{
-			int at = c.pairsOfGrain[i];
-			for (int j = i + 1; j < c.grains; ++j) {
-				if (!isNear(i, j)) continue;
-				c.pairFirst[at] = i, c.pairSecond[at] = j, c.pairSlot[at++] = slotOf(c, i, j);
-			}
+			const int start = c.pairsOfGrain[i];
+			int end = start;
+			eachNear(c, i, [&](int j) {
+				int to = end++;
+				for (; to > start && c.pairSecond[to - 1] > j; --to)
+					c.pairSecond[to] = c.pairSecond[to - 1];
+				c.pairSecond[to] = j;
+			});
+			for (int at = start; at < end; ++at)
+				c.pairFirst[at] = i, c.pairSlot[at] = slotOf(c, i, c.pairSecond[at]);
 		}
 		FIRST
 		{
 			c.pairs = all;
 			c.outdated = false;
 		}
-		BARRIER();
+		barrier();
 	}
 
 	GPU RARE inline void makeLists(Collision& c)
@@ -329,9 +381,9 @@ namespace gpu {
 			const Vector v = c.velocity[i], x = c.position[i] + c.dt * v, moved = x - c.listed[i];
 			c.position.set(i, x);
 			if (4 * dot(moved, moved) > c.skin * c.skin) c.outdated = true;
-			if (!(dot(v, v) * c.dt * c.dt < 0.25 * c.radius[i] * c.radius[i])) c.failure = Failure::TooFast;
+			if (!(dot(v, v) * c.dt * c.dt < 0.25 * c.radius[i] * c.radius[i])) c.tooFast = true;
 		}
-		BARRIER();
+		barrier();
 	}
 
 	template <unsigned mechanisms, LimitRule limit> GPU void addForces(Collision& c, double dt, bool sampled)
@@ -340,28 +392,29 @@ namespace gpu {
 		if (sampled) sums.stored = { 0, 0, 0, 0 }, sums.kinetic = sums.contacts = sums.between = 0;
 		EACH(slot, c.slots) bringOn<mechanisms, limit>(c, slot, dt, sampled, sums);
 		EACH(pair, c.pairs) if (isForming(c, pair)) c.born = true;
-		BARRIER();
+		barrier();
 		if (c.born) form<mechanisms, limit>(c, dt, sampled, sums);
 	}
 
 	// ---- samples ----
 
-	GPU inline void sumOf(const Collision& c, Sample& sample)
+	GPU inline Sums sumOf(const Sums* sums, int count)
 	{
-		sample = Sample {};
-		Energies& e = sample.energies;
-		for (int t = 0; t < threads(); ++t) {
-			const Sums& s = c.sums[t];
-			e.dissipated += s.lost, e.stored += s.stored, e.kinetic += s.kinetic;
-			sample.formed += s.formed, sample.broken += s.broken, sample.contacts += s.contacts, sample.between += s.between;
-			for (int mode = 0; mode < bondModeCount; ++mode)
-				sample.brokenBonds[mode] += s.brokenBonds[mode];
-			for (Side Sample::*side : { &Sample::right, &Sample::left }) {
-				const Side& own = side == &Sample::right ? s.right : s.left;
-				(sample.*side).grains += own.grains, (sample.*side).position += own.position;
-				(sample.*side).velocity += own.velocity;
-			}
-		}
+		Sums all {};
+		for (int k = 0; k < count; ++k)
+			all += sums[k];
+		return all;
+	}
+	GPU inline Sample sampleOf(const Sums& all, double time)
+	{
+		Sample sample {};
+		sample.time = time;
+		sample.energies.dissipated = all.lost, sample.energies.stored = all.stored, sample.energies.kinetic = all.kinetic;
+		sample.contacts = all.contacts, sample.between = all.between, sample.formed = all.formed, sample.broken = all.broken;
+		for (int mode = 0; mode < bondModeCount; ++mode)
+			sample.brokenBonds[mode] = all.brokenBonds[mode];
+		sample.right = all.right, sample.left = all.left;
+		return sample;
 	}
 
 	GPU inline double timeOf(const Collision& c) { return c.timeOfChange + double(c.step - c.changed) * c.dt; }
@@ -386,16 +439,14 @@ namespace gpu {
 			Side& side = x > 0 ? sums.right : sums.left;
 			side.grains += 1, side.position += x, side.velocity += vNow.x;
 		}
-		BARRIER();
+		barrier();
+		FIRST_OF_GROUP { c.sumsOfGroup[group()] = sumOf(c.sums + thread(), endOfGroup() - thread()); }
+		if (mostGroups > 1) barrier();
 		FIRST
 		{
-			if (c.samples < c.room.samples) {
-				sumOf(c, c.sample[c.samples]);
-				c.sample[c.samples].time = timeOf(c);
-				++c.samples;
-			}
+			if (c.samples < c.room.samples) c.sample[c.samples++] = sampleOf(sumOf(c.sumsOfGroup, groups()), timeOf(c));
 		}
-		BARRIER();
+		barrier();
 	}
 
 	// A step of another length from a sample on: the kick is what belongs before it by the old one, the rest by the new (MODEL.md).
@@ -408,13 +459,13 @@ namespace gpu {
 			c.velocity.set(i, c.velocity[i] + (less / c.mass[i]) * before.force);
 			c.spin.set(i, c.spin[i] + (less / c.inertia[i]) * before.torque);
 		}
-		BARRIER();
+		barrier();
 		FIRST
 		{
 			c.timeOfChange = timeOf(c), c.changed = c.step;
 			c.dt = c.dtAfter, c.interval = c.intervalAfter;
 		}
-		BARRIER();
+		barrier();
 	}
 
 	// ---- a run ----
@@ -432,7 +483,7 @@ namespace gpu {
 			c.pointer1.set(slot, h.pointers.n1), c.pointer2.set(slot, h.pointers.n2), c.twist[slot] = 0;
 		}
 		EACH(i, c.grains) c.velocityBefore.set(i, c.velocity[i]);
-		BARRIER();
+		barrier();
 		makeLists(c);
 		if (c.failure != Failure::None) return;
 		addForces<mechanisms, limit>(c, 0, true);
@@ -441,7 +492,7 @@ namespace gpu {
 			kick(c, i, -0.5 * c.dt);
 			c.velocityBefore.set(i, c.velocity[i]);
 		}
-		BARRIER();
+		barrier();
 		takeSample(c);
 	}
 
@@ -456,7 +507,8 @@ namespace gpu {
 				--c.stepsLeft;
 			}
 			if (c.outdated) makeLists(c);
-			BARRIER();
+			FIRST if (c.tooFast) c.failure = Failure::TooFast;
+			barrier();
 			if (c.failure != Failure::None) return;
 			const bool sampled = (c.step - c.changed) % c.interval == 0 || c.stepsLeft == 0;
 			addForces<mechanisms, limit>(c, c.dt, sampled);

@@ -18,14 +18,14 @@ import numpy as np
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP))
 from analysis import theory
-from yade_scripts.run.ensemble import BUILT, DEVICE, MECHANISMS, PROCESSOR, Collision, Grains, Library
+from yade_scripts.run.ensemble import BUILT, DEVICE, MECHANISMS, PROCESSOR, WHOLE_DEVICE, Collision, Grains, Library
 
 PAIRS = BUILT / "pairs.npz"
 RADIUS = 1e-7
 PAIR = theory.pair_constants(theory.ICE, RADIUS)
 STEP = 0.1 * PAIR.time_unit
 LASTING = round(0.4e-6 / STEP)
-MADE = {256: 32, 2048: 4, 8192: 2}  # grains of an aggregate: pairs
+MADE = {256: 32, 2048: 4, 8192: 2, 50_000: 1}  # grains of an aggregate: pairs
 
 
 def prepare():
@@ -132,20 +132,24 @@ def speed(library, grains, counts, until, steps=1000):
 def measure(seconds):
     until = time.monotonic() + seconds
     processor, device = Library(PROCESSOR), Library(DEVICE)
-    for variant in sorted(BUILT.glob("libdevice-*.so")):
+    for variant in sorted(BUILT.glob("libdevice-*x*.so")):
         say("variant", name=variant.stem)
         speed(Library(variant), 256, (264, 1056), until, 300)
     say("device", name=device.device, library=str(DEVICE))
-    equality(processor, device)
-    same_bits(device)
+    whole = Library(WHOLE_DEVICE)
+    for library in (device, whole):
+        equality(processor, library)
+        same_bits(library)
+    for grains in (256, 2048, 8192, 50_000):  # one collision by the whole device
+        speed(whole, grains, (1,), until, 300)
     speed(device, 256, (132, 264, 528, 1056, 4224), until)
     speed(device, 2048, (132, 528), until, 300)
     speed(device, 8192, (132, 264), until, 100)
     if time.monotonic() < until:
-        whole = collisions(device, 256, 2112, LASTING)
-        taken = timed(device, whole, LASTING)
-        failures = [each.read().failure for each in whole]
-        say("whole", collisions=len(whole), seconds=taken, failures=len(failures) - failures.count(None))
+        many = collisions(device, 256, 2112, LASTING)
+        taken = timed(device, many, LASTING)
+        failures = [each.read().failure for each in many]
+        say("to the end", collisions=len(many), seconds=taken, failures=len(failures) - failures.count(None))
 
 
 if __name__ == "__main__":

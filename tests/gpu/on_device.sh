@@ -7,7 +7,7 @@ cd "$(dirname "$0")/../.."
 python=${PYTHON:-python3}
 if [ "$1" = prepare ]; then
 	# threads of a block x blocks of a multiprocessor
-	make build/gpu/libprocessor.so gpu build/gpu/libdevice-128x2.so build/gpu/libdevice-128x4.so build/gpu/libdevice-256x1.so build/gpu/libdevice-512x1.so
+	make build/gpu/libprocessor.so build/gpu/libprocessor-whole.so gpu build/gpu/libdevice-128x2.so build/gpu/libdevice-128x4.so build/gpu/libdevice-256x1.so build/gpu/libdevice-512x1.so
 	$python tests/gpu/on_device.py prepare
 else
 	$python tests/gpu/on_device.py measure "${SECONDS_GIVEN:-300}"

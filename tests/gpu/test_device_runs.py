@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -98,6 +99,21 @@ def test_stopped_runs_give_their_folders_back_and_start_again(tmp_path, signal_o
     assert not list((tmp_path / "runs").glob("?/lock"))
 
 
+def test_a_large_collision_gets_the_whole_device(tmp_path, monkeypatch):
+    monkeypatch.setattr(on_device, "LARGE", 40)
+    library, sizes = on_device.library_of("processor"), []
+    run = library.large.run
+    monkeypatch.setattr(
+        library.large, "run", lambda own, steps: (sizes.extend(one.grains for one in own), run(own, steps))
+    )
+    cells = {"packing": "bcca", "velocity": "15", "stepFraction": "0.2", "states": "4"}
+    given = [
+        CollisionParameters.parse({**cells, "grains": grains, "out": str(tmp_path / grains)}) for grains in ("15", "30")
+    ]
+    assert on_device.run(given, library) == {} and set(sizes) == {60}
+    assert [open_run(one.out).record["outcome"] for one in given] == ["sticking", "sticking"]
+
+
 class Lost(on_device.Library):
     """A device that is lost at its third launch."""
 
@@ -120,18 +136,18 @@ def test_what_was_on_a_lost_device_fails_each_with_its_line(tmp_path):
 
 
 def test_a_device_that_is_not_there_is_one_line(tmp_path, monkeypatch):
-    monkeypatch.setitem(on_device.LIBRARIES, "gpu", tmp_path / "none.so")
+    monkeypatch.setitem(on_device.LIBRARIES, "gpu", 2 * (tmp_path / "none.so",))
     with pytest.raises(on_device.InputError, match="^--device gpu: .*none.so is not built; must be made first"):
         on_device.library_of("gpu")
 
 
-RESOURCES = on_device.DEVICE.with_name("resources.txt")
+RESOURCES = [on_device.DEVICE.with_name(f"resources{of}.txt") for of in ("", "-whole")]
 
 
-@pytest.mark.skipif(not RESOURCES.exists(), reason="make gpu has not been called")
+@pytest.mark.skipif(not all(map(Path.exists, RESOURCES)), reason="make gpu has not been called")
 def test_the_device_has_room_for_two_blocks_of_every_kernel():
     """What nvcc says of registers and of what they spill: 65,536 registers for 2 x 256 threads; spills cost time."""
-    text = RESOURCES.read_text()
+    text = "".join(map(Path.read_text, RESOURCES))
     registers = [int(number) for number in re.findall(r"Used (\d+) registers", text)]
     spilt = [int(number) for number in re.findall(r"(\d+) bytes spill stores", text)]
     assert registers and max(registers) <= 128 and max(spilt) <= 800, (registers, spilt)

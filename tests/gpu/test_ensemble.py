@@ -1,14 +1,17 @@
 """The ensemble's code, as processors run it, makes the engine's collisions: the same motion, events and energies."""
 
+import ctypes
+
 import numpy as np
 import pytest
 from scenes import *
 
 from analysis import theory
 from yade_scripts import packings
-from yade_scripts.run.ensemble import MATERIAL, MECHANISMS, Collision, Grains, Library
+from yade_scripts.run.ensemble import MATERIAL, MECHANISMS, WHOLE_PROCESSOR, Collision, Grains, Library
 
 RADIUS = 1e-7
+OPENMP = ctypes.CDLL("libgomp.so.1")
 SPRINGS = sum(MECHANISMS.values()) - MECHANISMS["drag"]
 ICE = dict(young=7e9, poisson=0.25, density=1000.0, surfaceEnergy=0.1, criticalRolling=8e-10, viscoelasticTime=0.0)
 SOFT = dict(ICE, young=3e9, surfaceEnergy=0.05)
@@ -47,9 +50,9 @@ def two_clusters(kind, grains=30, speed=20.0):
     )
 
 
-def collision(kind, steps, time_step=0.05, interval=50, **changed):
+def collision(kind, steps, time_step=0.05, interval=50, library=Library(), **changed):
     options = {"mechanisms": SPRINGS, **SCENES[kind][2], **changed}
-    return Collision(Library(), two_clusters(kind), steps, time_step * TIME_UNIT, interval, **options)
+    return Collision(library, two_clusters(kind), steps, time_step * TIME_UNIT, interval, **options)
 
 
 def ran(kind, steps, **options):
@@ -110,6 +113,19 @@ def test_the_ledger_closes_to_second_order(kind):
         error.append(np.abs(total - total[0]).max() / samples["kinetic"][0])
     order = np.polyfit(np.log([4, 2, 1]), np.log(error), 1)[0]
     assert 1.6 < order < 2.6 and error[-1] < 1e-5
+
+
+@pytest.mark.parametrize("kind", SCENES)
+def test_many_threads_move_one_collision_as_one_does(kind):
+    """With several groups of threads, and one of them not full."""
+    OPENMP.omp_set_num_threads(5)
+    alone, together = (ran(kind, 1000, library=library) for library in (Library(), Library(WHOLE_PROCESSOR)))
+    assert np.array_equal(together.motion(), alone.motion())
+    assert all(np.array_equal(*both) for both in zip(together.contacts(), alone.contacts()))
+    one, other = alone.samples(), together.samples()
+    assert one["formed"][-1] >= 2
+    for name, values in one.items():
+        assert other[name] == pytest.approx(values, rel=1e-9, abs=1e-12 * one["kinetic"][0])
 
 
 def test_a_collision_resumes_to_the_same_bits():

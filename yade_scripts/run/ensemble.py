@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 BUILT = Path(__file__).parents[2] / "build" / "gpu"
 PROCESSOR, DEVICE = BUILT / "libprocessor.so", BUILT / "libdevice.so"
+WHOLE_PROCESSOR, WHOLE_DEVICE = BUILT / "libprocessor-whole.so", BUILT / "libdevice-whole.so"
 MECHANISMS = {"sliding": 1, "rolling": 2, "twisting": 4, "drag": 8}
 LIMITS = ("held", "cut")
 MATERIAL = ("young", "poisson", "density", "surfaceEnergy", "criticalRolling", "viscoelasticTime")
@@ -55,7 +56,8 @@ class _Input(ctypes.Structure):
 
 
 class Library:
-    """The compiled ensemble of one back end: PROCESSOR (make), or DEVICE (make gpu).
+    """The compiled ensemble of one back end: PROCESSOR (make), or DEVICE (make gpu). In those named WHOLE all threads
+    work on one collision after another, for large ones; results are the same but for the rounding of sums.
 
     Attributes
     ----------
@@ -65,7 +67,11 @@ class Library:
         Energy channels, in the order of the samples.
     at_once : int
         Collisions that it computes at the same time.
+    large : Library or None
+        Of the same back end, for large collisions.
     """
+
+    large = None
 
     def __init__(self, path=PROCESSOR):
         self._of = ctypes.CDLL(str(path))

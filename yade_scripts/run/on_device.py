@@ -24,10 +24,11 @@ from analysis.version import commit, version
 from yade_scripts.experiments import collision
 from yade_scripts.parameters import InputError, one_line
 from yade_scripts.run.device_run import Seen, mechanisms_of
-from yade_scripts.run.ensemble import DEVICE, PROCESSOR, Collision, DeviceError, Library
+from yade_scripts.run.ensemble import DEVICE, PROCESSOR, WHOLE_DEVICE, WHOLE_PROCESSOR, Collision, DeviceError, Library
 from yade_scripts.run.parameters import CORES
 
-LIBRARIES = {"gpu": DEVICE, "processor": PROCESSOR}
+LIBRARIES = {"gpu": (DEVICE, WHOLE_DEVICE), "processor": (PROCESSOR, WHOLE_PROCESSOR)}
+LARGE = 10_000  # grains of both aggregates, from which on the whole device works on one collision: not measured yet
 TOP = Path(__file__).resolve().parents[2]
 ENOUGH = 3  # times as many collisions under way as the device computes at once: each holds a file of its process
 LAUNCHES = 2  # under way: when one has come to an end the next must be there
@@ -37,7 +38,11 @@ PATIENCE = 0.1  # s, between looks at signals, and for memory of the device
 
 def library_of(device):
     """The Library of a device, a name of LIBRARIES. Raises InputError."""
-    file = LIBRARIES[device]
+    library, library.large = (_loaded(device, file) for file in LIBRARIES[device])
+    return library
+
+
+def _loaded(device, file):
     if not file.exists():
         raise InputError(f"--device {device}: {file} is not built; must be made first (make gpu; make for a processor)")
     try:
@@ -134,10 +139,13 @@ class _Host:
 
     def _place(self, number, start):
         """Have a Collision on the device; where its memory is full, when others have come to their end."""
+        library = self._library
+        if library.large and len(start.grains.position) >= LARGE:
+            library = library.large
         with self._placing:
             while True:
                 try:
-                    one = Collision(self._library, start.grains, **start.options)
+                    one = Collision(library, start.grains, **start.options)
                     self._placed.add(number)
                     return one
                 except DeviceError:
@@ -153,7 +161,9 @@ class _Host:
                 while True:
                     tasks.append(self._waiting.get_nowait())
             try:
-                self._library.run([one for one, _, _ in tasks], [min(steps, PART) for _, steps, _ in tasks])
+                for library in {one.library for one, _, _ in tasks}:
+                    own = [(one, min(steps, PART)) for one, steps, _ in tasks if one.library is library]
+                    library.run(*zip(*own))
             except DeviceError as error:  # the device is lost, and all that was on it
                 for _, _, done in tasks:
                     done.set_exception(error)
