@@ -20,9 +20,10 @@ ABOUT = """Outcomes of collisions of two dust aggregates, of {runs} runs (fracti
 Axes: velocity over v_break = (E_break/m0)^(1/2), grains of the larger aggregate, mass of the smaller over the larger,
 filling factor (of a sphere of radius (5/3)^(1/2) R_g; mean by mass of both).
 Columns: as of the atlas's tables (analysis/gallery/atlas/outcomes.txt). p_...: (k + 1/5)/(n + 1) of the n decided runs
-that met nearest to the node, of which k ended so; error_...: their 90 % half widths; p_touching: of all runs there,
-those that met; the others are means of those runs, 0 where they have none. inside: 1 where a node has runs of its own;
-others have the values of the nearest one that has. runs: their number."""
+that met nearest to the node, of which k ended so; error_...: their 90 % half widths; p_touching: of all runs there
+(and at nodes nearest to it without a decided run), those that met; the others are means of those runs, 0 where they
+have none. inside: 1 where a node has runs of its own; others have the values of the nearest one that has.
+runs: their number."""
 
 
 def outcome_table(runs, file=None, **nodes):
@@ -30,7 +31,7 @@ def outcome_table(runs, file=None, **nodes):
 
     Parameters
     ----------
-    runs : path, pattern, RunFolder or list of these
+    runs : path, pattern, RunFolder, list of these, or DataFrame of table() or collide()
         Collisions of two aggregates of equal grains, best at random offsets (impact=random).
     file : path, optional
         Where the table is written.
@@ -45,7 +46,7 @@ def outcome_table(runs, file=None, **nodes):
     """
     if unknown := set(nodes) - set(APART):
         raise ValueError(f"{min(unknown)}: no axis; must be {', '.join(APART)}")
-    measured, problems = measure_runs(runs, measure)
+    measured, problems = measure_runs(list(runs.folder) if isinstance(runs, pandas.DataFrame) else runs, measure)
     found = pandas.DataFrame([row for _, row in measured])
     known = found[~found.outcome.isin((NEVER_MET, UNDECIDED))] if len(found) else found
     if not len(known):
@@ -55,10 +56,11 @@ def outcome_table(runs, file=None, **nodes):
     shape = [len(axis.nodes) for axis in axes]
     place = np.column_stack([axis.position(points[axis.name]) for axis in axes])
     node = np.ravel_multi_index(np.rint(place).astype(int).T, shape)
-    rows = [_row(own) for _, own in found.groupby(node)]
-    there, grid = np.unique(node), np.indices(shape).reshape(len(axes), -1).T
-    there, rows = zip(*[(at, row) for at, row in zip(there, rows) if row["runs"]])
-    nearest = cKDTree(grid[list(there)]).query(grid)[1]
+    # Fillings last: of aggregates that grow they scatter, and none is chosen by whether it hits.
+    grid = np.indices(shape).reshape(len(axes), -1).T * [1.0, 1.0, 1.0, 1e-3]
+    there = np.unique(node[found.index.isin(known.index)])
+    nearest = cKDTree(grid[there]).query(grid)[1]
+    rows = [_row(own) for _, own in found.groupby(nearest[node])]
     values = pandas.DataFrame(rows).iloc[nearest].reset_index(drop=True)
     values[INSIDE] = np.isin(np.arange(len(grid)), there)
     values = values[list(COLUMNS)].fillna(0.0).to_numpy(dtype=float).reshape(*shape, -1)

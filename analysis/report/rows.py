@@ -39,7 +39,11 @@ OF_COLLISION = (
     Column("mass_fractions", "1", "of the mass, in the two largest pieces", "O"),
     Column("largest_fragment", "", "number of grains of the largest piece by mass"),
     Column("fragments", "", "number of pieces"),
-    Column("growth_efficiency", "1", "(m_largest - m_target)/m_projectile (A22 eq 28); of a plate m_on/m"),
+    Column(
+        "growth_efficiency",
+        "1",
+        "(m_largest - m_target)/m_projectile (A22 eq 28), the target being the heavier; of a plate m_on/m",
+    ),
     Column("mass_on_plate", "1", "of the mass, what sticks to the plate"),
     Column("released", "K(0)", "what contacts released before the first touch, as they did not start at rest"),
 )

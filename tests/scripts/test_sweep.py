@@ -9,6 +9,7 @@ import pandas
 import pytest
 from running import PYTHON, TOP, call, collide, refusal
 
+import analysis
 from analysis.runs.format import PARAMETER_UNITS, PARAMETER_WORDS
 from yade_scripts import collide as from_python
 from yade_scripts.experiments import collision, compression
@@ -61,6 +62,18 @@ def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monk
     monkeypatch.setenv("PATH", "")
     with pytest.raises(InputError, match="^yade: no such command on PATH; must be"):
         from_python(radius=5, velocity=3)
+
+
+def test_a_table_of_outcomes_counts_the_pairs_that_never_met(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    pairs = dict(packing="bcca", grains=24, projectileGrains=6, impact="random", seed=range(8))
+    runs = from_python(velocity=[5, 20], duration=4e-6, endWhenApart=1, **pairs)
+    missed = (runs.outcome == "never met").sum()
+    table = analysis.outcome_table(runs)
+    of = lambda name: table.values[..., table.columns.index(name)]
+    there = of("inside") == 1
+    assert missed >= 2 and (runs.outcome != "undecided").all()
+    assert (of("runs") / of("p_touching"))[there].sum() == pytest.approx(16)
 
 
 def test_units_and_words_of_parameters_are_the_scripts_own():

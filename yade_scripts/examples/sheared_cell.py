@@ -37,8 +37,9 @@ def hold_pressure(shear=0.0):
 
 
 def series():
-    filling = len(O.bodies) * 4 / 3 * np.pi * RADIUS**3 / O.cell.volume
-    return {"strain": O.cell.hSize[0, 2] / O.cell.hSize[2, 2], "stress": getStress()[0, 2], "filling": filling}
+    filling, stress = len(O.bodies) * 4 / 3 * np.pi * RADIUS**3 / O.cell.volume, np.array(getStress())
+    found = {"stress": stress[0, 2], "pressure": -np.trace(stress) / 3, "filling": filling}
+    return {"strain": O.cell.hSize[0, 2] / O.cell.hSize[2, 2], **found}
 
 
 control = PyRunner(command="hold_pressure()", iterPeriod=20)
@@ -60,9 +61,10 @@ control.command = f"hold_pressure({SHEAR})"
 O.run(10001, True)
 
 half = 5000 * O.dt  # s: the last half of the shear
-stress, filling = run.recent("stress", half) / PRESSURE, run.recent("filling", half)
+stress, pressure, filling = (run.recent(name, half) for name in ("stress", "pressure", "filling"))
 print(
-    f"sheared by {run.recent('strain')[0]:.2f}: over the last half the shear stress is {stress.mean():.3f} of the "
-    f"pressure ({stress.min():.3f} to {stress.max():.3f}), the filling factor {filling.mean():.3f}"
+    f"sheared by {run.recent('strain')[0]:.2f}: over the last half the shear stress is "
+    f"{stress.mean() / pressure.mean():.3f} of the pressure, which is {pressure.mean() / PRESSURE:.3f} of that held; "
+    f"the filling factor rises from {filling[0]:.3f} to {filling[-1]:.3f}"
 )
 sys.exit(0)
