@@ -15,9 +15,9 @@ from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
 from ..runs.measured import maximum_of_run, met, time_of_touch
 from ..runs.table import Column, read_table
-from ..theory import Material
+from ..theory import Material, breaking_velocity
 from .rules import KINDS, outcome
-from .variables import FIT, HELD_OUT, breaking_velocity
+from .variables import FIT, HELD_OUT
 
 NAME = re.compile(r"(\d+)(-held)?")  # of a run folder: the number of the row, and whether it is held out
 OF_BODY = (

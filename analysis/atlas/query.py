@@ -8,12 +8,12 @@ import numpy as np
 import pandas
 
 from ..arrays import numbers
-from ..theory import GRAIN_RADIUS, MATERIALS
+from ..theory import GRAIN_RADIUS, MATERIALS, breaking_velocity
 from ..theory.pair_constants import GRAIN_RADII
 from .columns import read_runs
 from .outcome_table import ERRORS, INSIDE, INTERVALS, PROBABILITIES, read_outcomes
 from .rules import KINDS, change, largest_after
-from .variables import GROWN, STRUCTURES, Region, breaking_velocity, of_structure
+from .variables import GROWN, STRUCTURES, Region, of_structure
 
 FOLDER = Path(__file__).resolve().parents[1] / "gallery" / "atlas"
 RUNS_FILE = FOLDER / "runs.csv"

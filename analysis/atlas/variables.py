@@ -3,7 +3,6 @@
 A point is a row of a DataFrame with the columns FEATURES; variables() makes points of a table of runs.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ import pandas
 from scipy.spatial import ConvexHull, cKDTree
 
 from ..measures.outcome import NEVER_MET, UNDECIDED
-from ..theory import ICE, interaction_energies, pair_constants, sticking_velocity_without_drag
+from ..theory import ICE, breaking_velocity, pair_constants, sticking_velocity_without_drag
 from .rules import KINDS
 
 FEATURES = ("velocity", "grains", "mass_ratio", "filling", "impact_square")
@@ -23,14 +22,6 @@ GROWN, CLOSE_PACKED = STRUCTURES
 # In units of the scatter of the runs. With this margin the region of the first 700 runs holds 96 % of the next 700.
 MARGIN, NEAR = 0.25, 0.7
 NEAREST = 5  # runs
-
-
-@lru_cache
-def breaking_velocity(material, radius):
-    """v_break = (E_break/m0)^(1/2) [m/s] of grains of a theory.Material and a radius [m], with m0 the mass of one and
-    E_break of A22 eq 12."""
-    constants = pair_constants(material, radius)
-    return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5
 
 
 # What making and breaking one contact dissipates, over E_break, of every material: energy() of two grains at the

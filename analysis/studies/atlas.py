@@ -10,21 +10,12 @@ from ..atlas.make import SIZES
 from ..atlas.outcome_table import PROBABILITIES, read_outcomes
 from ..atlas.query import outcome, outcomes_file
 from ..atlas.rules import KINDS
-from ..atlas.variables import (
-    STRUCTURES,
-    breaking_velocity,
-    decided,
-    drawn,
-    fit_and_held_out,
-    of_structure,
-    slow,
-    variables,
-)
+from ..atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, of_structure, slow, variables
 from ..figures.style import letter, panels, styled
 from ..measures.fragments import growth_efficiency
 from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..runs.measured import UNLIKE
-from ..theory import ICE
+from ..theory import ICE, breaking_velocity
 from .columns import NotMeasured, group
 from .comparison import Row
 from .estimates import Estimate, average, beside, ending, estimate, fraction, zero_of_fit

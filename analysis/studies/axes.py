@@ -4,11 +4,10 @@ import re
 
 import numpy as np
 
-from ..atlas.variables import breaking_velocity
 from ..figures.style import letter, panels, styled
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
 from ..runs.measured import outcome_of_run
-from ..theory import ICE
+from ..theory import ICE, breaking_velocity
 from .columns import CLOSURE, OUTCOME, VELOCITY, Column, NotMeasured, group, one, parameter
 from .comparison import Row
 from .estimates import average, beside, estimate, zero_of_fit
@@ -68,9 +67,10 @@ def prepared(runs):
 
 
 def critical_speed(runs):
-    """Speed [v_break] above which targets lose more than they gain, by the runs from FAST on."""
+    """Speed [v_break] above which targets lose more than they gain, by the runs from FAST on; NaN far from them."""
     runs = runs[(runs.speed > FAST) & runs.grown.notna()]
-    return zero_of_fit(runs.speed, runs.grown)
+    found = zero_of_fit(runs.speed, runs.grown)
+    return found if FAST / 2 < found < 2 * SPEEDS[-1] else np.nan
 
 
 def rows(runs):

@@ -129,13 +129,12 @@ def threshold(x, y):
 
 
 def zero_of_fit(x, y):
-    """x at which y (K,), fitted linear in ln x, is 0; NaN with fewer than three values of x (K,), and where it is not
-    among them. Of growth efficiency against velocity: above it targets lose more than they gain."""
+    """x at which y (K,), fitted linear in ln x, is 0; NaN with fewer than three values of x (K,). Of growth efficiency
+    against velocity: above it targets lose more than they gain."""
     if len(np.unique(x)) < 3:
         return math.nan
     slope, level = np.polyfit(np.log(x), y, 1)
-    zero = np.exp(-level / slope)
-    return float(zero) if np.min(x) <= zero <= np.max(x) else math.nan
+    return float(np.exp(-level / slope))
 
 
 def exponent(x, y):

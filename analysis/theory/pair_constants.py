@@ -6,6 +6,7 @@ zeta_crit = (G'/G*) a0/(16 pi), which is (2 - nu) a0/(16 pi) for equal materials
 grains of the same reduced radius and reduced mass (r = 2 R, m = 2 m*)."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi, sqrt
 
 
@@ -166,3 +167,11 @@ def interaction_energies(pair):
         "twist_critical": 0.5 * twisting * pair.critical_twisting**2,
         "twist": twisting * pair.critical_twisting * pi / 2.0,
     }
+
+
+@lru_cache
+def breaking_velocity(material, radius):
+    """v_break = (E_break/m0)^(1/2) [m/s] of grains of a Material and a radius [m], with m0 the mass of one and
+    E_break of A22 eq 12."""
+    constants = pair_constants(material, radius)
+    return (interaction_energies(constants)["break"] / (2 * constants.reduced_mass)) ** 0.5

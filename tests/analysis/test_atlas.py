@@ -12,17 +12,9 @@ from analysis.__main__ import main
 from analysis.atlas import outcome_table, query, rules, variables
 from analysis.atlas.columns import COLUMNS, measure, power_law_index, read_runs
 from analysis.atlas.outcome_table import ERRORS, INTERVALS, PROBABILITIES, read_outcomes, write_outcomes
-from analysis.atlas.variables import (
-    GROWN,
-    MARGIN,
-    STRUCTURES,
-    Region,
-    breaking_velocity,
-    fit_and_held_out,
-    of_structure,
-)
+from analysis.atlas.variables import GROWN, MARGIN, STRUCTURES, Region, fit_and_held_out, of_structure
 from analysis.runs.table import make_table, table_text
-from analysis.theory import GRAIN_RADIUS, ICE
+from analysis.theory import GRAIN_RADIUS, ICE, breaking_velocity
 
 # mass ratio, largest, second, own -> outcome
 RULED = [
@@ -174,7 +166,7 @@ def test_the_gallerys_intervals_hold_the_largest_piece_of_held_out_runs():
     for structure in STRUCTURES:
         held = of_structure(all_held, structure)
         at, several = variables.variables(held), held.pieces > 1
-        speed = at.velocity * variables.breaking_velocity(ICE, GRAIN_RADIUS["ice"])
+        speed = at.velocity * breaking_velocity(ICE, GRAIN_RADIUS["ice"])
         grains, how = (at.mass_ratio * at.grains, at.grains), {"impact": np.sqrt(at.impact_square)}
         found = analysis.outcome(speed, *grains, at.filling, structure=structure, **how)
         assert np.all(found["largest"] + found["second"] < 1 + 1e-5)

@@ -31,10 +31,10 @@ from scipy.stats import qmc
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOP = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, TOP)
-from analysis.atlas.variables import CHOSEN, breaking_velocity
+from analysis.atlas.variables import CHOSEN
 from analysis.measures.periodic_cell import filling_factor
 from analysis.progress import progress
-from analysis.theory import ICE, SILICATE
+from analysis.theory import ICE, SILICATE, breaking_velocity
 from yade_scripts import packings, time_step
 from yade_scripts.experiments.collision import CollisionParameters, place
 from yade_scripts.materials import equilibrium_overlap, pair_constants

@@ -10,8 +10,7 @@ from math import floor, pi
 
 import numpy as np
 
-from analysis.atlas.variables import breaking_velocity
-from analysis.theory import ICE
+from analysis.theory import ICE, breaking_velocity
 from yade_scripts.experiments.collision import CollisionParameters, step_limit
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import EQUAL, radii

