@@ -26,7 +26,7 @@ AXES = {  # axis: its title
     "rolling": "critical rolling displacement",
     "springs": "a spring left out",
 }
-SPEEDS = (2.0, 5.0, 8.0, 12.0, 25.0)  # v_break: limits of bands
+SPEEDS = (2.0, 3.2, 5.0, 6.5, 8.5, 12.0, 25.0)  # v_break: limits of bands
 FAST = 5.0  # v_break: below, aggregates stick
 HARDLY = (0.75, 1.33)  # of a critical velocity: as in the atlas
 
@@ -97,32 +97,36 @@ def _place(group):
 
 
 def figures(runs):
-    """Changes of the fraction that sticks."""
+    """Changes of the fraction that sticks, and of the growth efficiency."""
     changed = runs[(runs.axis != BASE) & runs.more.notna()]
     if len(changed):
-        caption = "Fraction that sticks, less that of the same pairs unchanged, with standard errors."
-        yield "changes", caption, _changes(changed)
+        less = ", less that of the same pairs unchanged, with standard errors."
+        yield "sticking", f"Fraction that sticks{less}", _changes(changed, "more", "change of $p_{stick}$")
+        yield "growth", f"Growth efficiency{less}", _changes(changed, "gain", "change of growth efficiency")
 
 
 @styled
-def _changes(runs):
-    """A panel for each axis: the change against the speed."""
+def _changes(runs, column, label):
+    """A panel for each axis: the mean of a column against the speed."""
     figure, axes = panels(2, 4, 3.3, 2.9)
     for place, (axis, title) in zip(axes.ravel(), AXES.items()):
         own = runs[runs.axis == axis]
         for level, colour in zip(sorted(own.level.unique()), COLOURS):
             part = own[own.level == level]
             bands = part.groupby(np.digitize(part.speed, SPEEDS[1:-1]))
-            points(place, bands.speed.mean(), [average(band.more) for _, band in bands], colour, level, line="-")
+            points(place, bands.speed.mean(), [average(band[column]) for _, band in bands], colour, level, line="-")
         place.axhline(0.0, color="0.6", lw=0.8, zorder=0)
-        place.set(xscale="log", ylim=(-0.75, 0.75))
+        place.set(xscale="log", xlim=(SPEEDS[0], SPEEDS[-1]))
         plain_ticks(place, "x")
         place.set_title(title, fontsize=10)
         place.legend(frameon=False, fontsize=8, loc="lower left")
     for place in axes[-1]:
         place.set_xlabel("$v/v_{break}$")
+    low, high = zip(*(place.get_ylim() for place in axes.ravel()))
+    for place in axes.ravel():
+        place.set_ylim(min(low), max(high))
     for place in axes[:, 0]:
-        place.set_ylabel("change of $p_{stick}$")
+        place.set_ylabel(label)
     letter(axes, "")
     return figure
 

@@ -16,6 +16,7 @@ from ..runs.format import COMPRESSION
 from ..runs.ledger import work_closure
 from ..runs.measured import derived_constants
 from ..theory import Material, aggregates, contact_radius, pair_constants
+from ..theory.measured import MIDDLE
 from .columns import OF_GRAINS, Column, constant, group, one
 from .comparison import Row
 from .compression import CLUSTER
@@ -107,9 +108,6 @@ def power_law(values, places="filling"):
     return of
 
 
-MIDDLE = 0.23  # filling factor: geometric mean of FILLINGS, where a fit's value and exponent are independent
-
-
 def change(values, one, other, by):
     """Estimate of n in values ~ x^n between two sets of the same clusters, `by` the ratio of their x; not run where
     one is missing."""
@@ -123,7 +121,11 @@ QUANTITIES = {  # column over the formula: (what it is, paper)
     "pressed": ("compressive strength over E_roll/((1/φ − 1/0.74) r)³", "T23"),
     "conducted": ("k/k_mat over 2 (a0/r) φ^2.09", "A19"),
 }
-VALUES = {"tensile_strength": "filling", "conductivity": "conducting_filling"}
+VALUES = {  # that are fitted, against which filling: (what it is, exponent of the paper)
+    "tensile_strength": ("filling", "tensile strength [Pa]", (1.8, "1.8", "T19")),
+    "pressed": ("filling", "compressive strength over the formula", ()),
+    "conductivity": ("conducting_filling", "conductivity, k/k_mat", (2.34 / 1.12, "2.09", "A19")),
+}
 
 
 def rows(runs):
@@ -138,9 +140,8 @@ def rows(runs):
         yield Row(f"φ where the tension is largest over that before, φ = {filling}", found, 0.5, "about half", "T19")
         found = estimate(mean("coordination"), where(ice, finalFilling=filling))
         yield Row(f"contacts of a grain, φ = {filling}", found)
-    for (name, places), paper in zip(VALUES.items(), ((1.8, "1.8", "T19"), (2.34 / 1.12, "2.09", "A19"))):
+    for name, (places, words, paper) in VALUES.items():
         level, n = estimates(power_law(name, places), ice)
-        words = name.replace("_", " ") + (" [Pa]" if "strength" in name else ", k/k_mat")
         yield Row(f"{words} at φ = {MIDDLE}, fit", level)
         yield Row(f"n of {words} ∝ φⁿ", n, *paper)
     yield from _dependences(runs, ice)

@@ -36,11 +36,14 @@ class Ending:
     def __init__(self, parameters, time_unit):
         self.parameters, self.rate = parameters, shrinking_rate(parameters, time_unit)
         self.window = AVERAGED * time_unit
+        self._loosest = None  # filling at which the stretching ends
 
     def __call__(self, recorder, state):
         filling, loose = recorder.recent("filling")[-1], self.parameters.stretchFilling
         if rates().max() > 0:
-            return filling <= (loose or LOOSE * recorder.recent("filling", np.inf).max())
+            if self._loosest is None:
+                self._loosest = loose or LOOSE * recorder.recent("filling", np.inf).max()
+            return filling <= self._loosest
         if not self.is_pressed(recorder):
             return False
         axes = AXES[self.parameters.stretch]

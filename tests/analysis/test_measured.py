@@ -1,0 +1,72 @@
+"""theory.measured: constants are the fits of the gallery's runs, and errors hold for clusters that were left out."""
+
+from math import hypot
+
+import numpy as np
+import pandas
+import pytest
+
+from analysis.studies import formulas
+from analysis.studies.estimates import estimate, estimates, mean, where
+from analysis.studies.gather import gather
+from analysis.studies.study import GALLERY, find
+from analysis.theory import measured
+
+LAWS = {  # column of the study: (its filling, law)
+    "tensile_strength": ("filling", measured.TENSILE),
+    "pressed": ("filling", measured.COMPRESSIVE),
+    "conductivity": ("conducting_filling", measured.CONDUCTIVITY),
+}
+
+
+@pytest.fixture(scope="module")
+def ice():
+    study = find("formulas")
+    table = gather(study, [GALLERY / "formulas" / "runs.csv"]).table
+    return where(study.runs(table), **formulas.ICE)
+
+
+def fitted(runs, name, places):
+    """Arguments of measured.PowerLaw."""
+    found = estimates(formulas.power_law(name, places), runs)
+    return [number for own in found for number in (own.value, own.error)]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_constants_are_the_fits_of_the_gallerys_runs(ice, name):
+    places, law = LAWS[name]
+    found = fitted(ice, name, places)
+    assert [law.level, law.level_error, law.exponent, law.exponent_error] == pytest.approx(found, rel=0.02)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_errors_hold_clusters_that_were_left_out(ice, name):
+    """A fit to the other fillings foretells those of one filling, within three combined errors."""
+    places, _ = LAWS[name]
+    for filling in formulas.FILLINGS:
+        left_out = np.isclose(ice.finalFilling, filling)
+        fit = [
+            number
+            for own in estimates(formulas.power_law(name, places), ice[~left_out])
+            for number in (own.value, own.error)
+        ]
+        own = ice[left_out]
+        foretold, there = measured.PowerLaw(*fit).times(1.0, own[places].mean()), estimate(mean(name), own)
+        assert abs(foretold.value - there.value) < 3 * hypot(foretold.error, there.error), filling
+
+
+def test_the_velocity_of_fragmentation_is_the_atlass():
+    rows = pandas.read_csv(GALLERY / "atlas" / "comparison.csv").set_index("quantity")
+    names = {"bpca": "critical velocity of BPCA, masses 1/4 to 1 [v_break]"}
+    for structure, (value, error) in measured.FRAGMENTATION.items():
+        row = rows.loc[names.get(structure, f"critical velocity of {structure}, all masses [v_break]")]
+        assert (value, error) == pytest.approx((row.ours, row.error), rel=0.01)
+    found = measured.fragmentation_velocity("bcca")
+    assert found.value == pytest.approx(6.90 * 3.823, rel=1e-3) and found.error == pytest.approx(0.30 * 3.823, rel=1e-3)
+
+
+def test_strengths_scale_as_their_formulas():
+    one, other = measured.tensile_strength(0.2), measured.tensile_strength(0.2, 0.02, 1e-6)
+    assert one.value / other.value == pytest.approx(50) and one.error / other.error == pytest.approx(50)
+    near, far = measured.conductivity([0.23, 0.4])[1] / measured.conductivity([0.23, 0.4])[0]
+    assert near < far and measured.compressive_strength(0.2).error > 0
