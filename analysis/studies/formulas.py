@@ -123,7 +123,6 @@ QUANTITIES = {  # column over the formula: (what it is, paper)
 }
 VALUES = {  # that are fitted, against which filling: (what it is, exponent of the paper)
     "tensile_strength": ("filling", "tensile strength [Pa]", (1.8, "1.8", "T19")),
-    "pressed": ("filling", "compressive strength over the formula", ()),
     "conductivity": ("conducting_filling", "conductivity, k/k_mat", (2.34 / 1.12, "2.09", "A19")),
 }
 

@@ -2,7 +2,6 @@
 
 from math import hypot
 
-import numpy as np
 import pandas
 import pytest
 
@@ -14,7 +13,6 @@ from analysis.theory import measured
 
 LAWS = {  # column of the study: (its filling, law)
     "tensile_strength": ("filling", measured.TENSILE),
-    "pressed": ("filling", measured.COMPRESSIVE),
     "conductivity": ("conducting_filling", measured.CONDUCTIVITY),
 }
 
@@ -43,8 +41,8 @@ def test_constants_are_the_fits_of_the_gallerys_runs(ice, name):
 def test_errors_hold_clusters_that_were_left_out(ice, name):
     """A fit to the other fillings foretells those of one filling, within three combined errors."""
     places, _ = LAWS[name]
-    for filling in formulas.FILLINGS:
-        left_out = np.isclose(ice.finalFilling, filling)
+    for filling in ice.finalFilling.unique():
+        left_out = ice.finalFilling == filling
         fit = [
             number
             for own in estimates(formulas.power_law(name, places), ice[~left_out])
@@ -53,6 +51,17 @@ def test_errors_hold_clusters_that_were_left_out(ice, name):
         own = ice[left_out]
         foretold, there = measured.PowerLaw(*fit).times(1.0, own[places].mean()), estimate(mean(name), own)
         assert abs(foretold.value - there.value) < 3 * hypot(foretold.error, there.error), filling
+
+
+def test_factors_of_the_compression_are_the_runs_means_and_lie_on_lines(ice):
+    """Each within three combined errors of the line between its neighbours."""
+    points = [(filling, estimate(mean("pressed"), own)) for filling, own in ice.groupby("finalFilling")]
+    for (filling, found), *constants in zip(points, *measured.COMPRESSIVE, strict=True):
+        assert constants == pytest.approx([filling, found.value, found.error], rel=0.02)
+    for (low, one), (filling, found), (high, other) in zip(points, points[1:], points[2:]):
+        part = (filling - low) / (high - low)
+        line, error = (1 - part) * one.value + part * other.value, hypot((1 - part) * one.error, part * other.error)
+        assert abs(line - found.value) < 3 * hypot(error, found.error)
 
 
 def test_the_velocity_of_fragmentation_is_the_atlass():
