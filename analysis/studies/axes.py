@@ -6,9 +6,8 @@ import numpy as np
 
 from ..figures.style import letter, panels, styled
 from ..measures.outcome import NEVER_MET, STICKING, UNDECIDED
-from ..runs.measured import outcome_of_run
 from ..theory import ICE, breaking_velocity
-from .columns import CLOSURE, OUTCOME, VELOCITY, Column, NotMeasured, group, one, parameter
+from .columns import CLOSURE, OUTCOME, VELOCITY, Column, NotMeasured, group, one, outcome_of, parameter
 from .comparison import Row
 from .estimates import average, beside, estimate, zero_of_fit
 from .figures import COLOURS, plain_ticks, points
@@ -50,7 +49,7 @@ MEASURED = (
     VELOCITY,
     parameter("impact", "", "impact parameter over the sum of the characteristic radii"),
     OUTCOME,
-    one("growth", "", "growth efficiency by mass", lambda run: float(outcome_of_run(run).growth_efficiency)),
+    one("growth", "", "growth efficiency by mass", lambda run: float(outcome_of(run).growth_efficiency)),
     CLOSURE,
 )
 

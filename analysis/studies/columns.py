@@ -1,6 +1,7 @@
 """Columns of a table of runs with how a run folder fills them, and those that several studies have."""
 
 from dataclasses import astuple
+from functools import lru_cache
 
 import numpy as np
 
@@ -101,8 +102,11 @@ def grains_text(parameters, but=()):
     return parameters["material"] + (f" ({', '.join(others)})" if others else "")
 
 
+outcome_of = lru_cache(maxsize=1)(outcome_of_run)  # several columns need that of the same run
+
+
 def _outcome(run, row):
-    outcome, v = outcome_of_run(run), run.history["v"]
+    outcome, v = outcome_of(run), run.history["v"]
     return outcome.kind, outcome.restitution, float(np.nan_to_num(v[-1] / row["velocity"]) ** 2)
 
 
@@ -112,5 +116,5 @@ OUTCOME = group(
     Column("restitution", "", "none for fragmentation and for pieces that passed each other", gaps=True),
     Column("bulk", "", "(v/v_col)^2 at the end: the fraction of K(0) in the motion of the halves"),
 )
-_largest = lambda run: float(outcome_of_run(run).mass_fractions[0])
+_largest = lambda run: float(outcome_of(run).mass_fractions[0])
 LARGEST = one("largest_fraction", "", "fraction of the mass in the largest piece", _largest)
