@@ -125,6 +125,7 @@ def test_a_piston_between_plates(tmp_path):
     [
         ("finalFilling=0.7", "finalFilling = 0.7: beyond random close packing; must be at most 0.650"),
         ("initialFilling=0.2", "initialFilling = 0.2: "),  # the cluster would touch its images
+        ("boundary=walls material=ice,silicate materialFraction=0.3", "material = ice,silicate: given with boundary"),
         ("stepFraction=0.4", "stepFraction = 0.4: unstable at this final filling and damping"),
     ],
 )

@@ -90,6 +90,7 @@ WRONG = {
     "material=iron": "material = iron: no such material; must be one of ice, silicate",
     "packing=bcca grains=1e6": "grains = 1000000: too many for packing = bcca",
     "target=wall neck=0.5": "neck = 0.5: given with target = wall",
+    "material=ice,silicate packing=bcca neck=0.5": "material = ice,silicate: given with neck = 0.5",
     "packing=file": "file: not given with packing = file",
     "velocity=3 velocity=4": "velocity: given twice",
 }

@@ -10,6 +10,7 @@ import numpy as np
 
 from analysis.measures.compression import compression_and_velocity
 from analysis.measures.decided import REBOUND_PER_RADIUS, RECENT, has_come_to_rest, rebound_time
+from analysis.measures.outcome import NEVER_MET
 from analysis.measures.plate import has_plate, with_plate
 from analysis.runs.folder import open_run
 from analysis.runs.format import COLLISION, RESTING, value_text
@@ -94,11 +95,13 @@ class CollisionParameters(AggregateParameters, RunParameters):
         *((name, "target", [AGGREGATE]) for name in ("projectileSpin", "projectileSpinAxis")),
         ("impactAngle", "target", [WALL]),
         # bonds start at rest, of equal grains
-        *((name, "neck", [0]) for name in ("sizes", "initialOverlap", "layout")),
+        *((name, "neck", [0]) for name in ("sizes", "initialOverlap")),
     ]
 
     def filled_in(self):
         """As AggregateParameters, with endWhenApart; refuses what doesn't go together."""
+        if self.neck and len(self.material_names) > 1:
+            raise ParameterError(f"material = {self.material}: given with neck = {self.neck:g}; must be one material")
         found = super().filled_in()
         short, step = found.impactStepFraction, found.stepFraction
         if short is not None and (step == time_step.AUTO or not step / 100 <= short < step):
@@ -348,7 +351,9 @@ def ending(folder):
     """Ending of the run in a folder, as analysis.measures.outcome and .decided have it."""
     found = outcome_of_run(open_run(folder))
     pieces = f"{found.fragments} piece{'s' * (found.fragments > 1)}"
-    words = f"{pieces}, the largest {found.mass_fractions[0]:.4g} of the mass, growth {found.growth_efficiency:.4g}"
+    words = f"{pieces}, the largest {found.mass_fractions[0]:.4g} of the mass"
+    if found.kind != NEVER_MET:
+        words += f", growth {found.growth_efficiency:.4g}"
     return Ending(found.kind, words, found.why_undecided)
 
 

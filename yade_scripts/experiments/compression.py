@@ -100,7 +100,7 @@ class CompressionParameters(GrainParameters, RunParameters):
     ONLY_WITH = [
         ("stretchFilling", "stretch", ["x", "xyz"]),
         # the functors have no plates in periodic cells, and walls only come together
-        *((name, "boundary", [PERIODIC]) for name in ("engine", "stretch", "initialFilling", "layout")),
+        *((name, "boundary", [PERIODIC]) for name in ("engine", "stretch", "initialFilling")),
     ]
 
     def title(self):
@@ -115,6 +115,8 @@ class CompressionParameters(GrainParameters, RunParameters):
         packing = PACKING[self.boundary]
         if self.packing not in (None, packing):
             raise ParameterError(f"packing = {self.packing}: given with boundary = {self.boundary}; must be {packing}")
+        if self.boundary == WALLS and len(self.material_names) > 1:
+            raise ParameterError(f"material = {self.material}: given with boundary = {WALLS}; must be one material")
         if self.layout == PAIR:
             raise ParameterError(f"layout = {PAIR}: a compression has one cluster; must be another one")
         at_rest = 0 if self.boundary == WALLS else self.atRest
