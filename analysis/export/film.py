@@ -17,6 +17,7 @@ from ..printable import Refused
 from ..progress import progress
 from ..runs.files import replacing, require_output
 from ..runs.folder import shown
+from ..runs.format import value_text
 from .fields import exported_states
 
 ENDINGS = ".mp4", ".gif", ".mkv", ".mov"
@@ -46,7 +47,7 @@ def write_film(run, file, frames_per_second=10, width=960, along="z", colour="ag
     view = (view[0] - more, view[1] + more, *view[2:])
     of, way = Range(run), COLOURINGS[colour]
     frames = (
-        _frame(exported, axes, way.colours(exported, of), way.legend(of), view, pixel, _grains(run.parameters))
+        _frame(exported, axes, way.colours(exported, of), way.legend(of), view, pixel, _grains(run))
         for exported in progress(exported_states(run), "drawing frames", len(run.states))
     )
     with replacing(file, ending=file.suffix) as part:
@@ -69,10 +70,10 @@ def _view(run, axes):
     return middle[0] - half[0], middle[0] + half[0], middle[1] - half[1], middle[1] + half[1]
 
 
-def _grains(parameters):
+def _grains(run):
     """'ice, γ = 0.1 J/m²' of what a run's parameters say of its grains."""
-    material, energy = str(parameters.get("material", "")), shown(parameters, "surfaceEnergy")
-    return material if energy is None else f"{material}, γ = {energy:g} J/m²"
+    material, energy = str(run.parameters.get("material", "")), shown(run.parameters, run.derived, "surfaceEnergy")
+    return material if energy is None else f"{material}, γ = {value_text(energy)} J/m²"
 
 
 def _frame(exported, axes, colours, legend, view, pixel, grains):

@@ -81,7 +81,7 @@ def run_title(run, addition=None):
     """Short description of a run from its parameters, as far as they are known, with an addition."""
     known = {
         "filling": "filling {}",
-        "radius": "aggregate radius {} $r$",
+        "radius": "radius {} $r$",
         "grains": "{} grains" + " per aggregate" * (run.kind is COLLISION),
         "velocity": "{} m/s",
         "impact": "impact {}",
@@ -89,9 +89,11 @@ def run_title(run, addition=None):
     }
     parts = []
     for name, text in known.items():
-        value = shown(run.parameters, name)
+        value = shown(run.parameters, run.derived, name)
         if isinstance(value, (int, float)) and (value or name != "impact"):
-            parts.append(text.format(f"{value:,}" if isinstance(value, int) else f"{value:.4g}"))
+            value = f"{value:,}" if isinstance(value, int) else f"{value:.4g}"
+        if isinstance(value, str):
+            parts.append(text.format(value))
     return ", ".join(parts + [addition] * bool(addition))
 
 

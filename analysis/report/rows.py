@@ -321,7 +321,8 @@ def long_text(run, row):
     known = [column for column in measured if row.get(column.name) is not None and row[column.name] == row[column.name]]
     state = "ended" if run.ended else "NOT ENDED: analysed as far as it went"
     lines = [f"run {run.path} ({state}, t = {row['time'] * 1e9:.4g} ns)"]
-    lines.append(textwrap.fill(settings(run.parameters), WIDTH, initial_indent="  ", subsequent_indent="  "))
+    told = settings(run.parameters, run.derived)
+    lines.append(textwrap.fill(told, WIDTH, initial_indent="  ", subsequent_indent="  "))
     for column in known:
         lines.append(f"  {column.name:<24}{_number(row[column.name], column.unit):<16} {column.meaning}".rstrip())
     if (row.get("released") or 0.0) > NOTICED:

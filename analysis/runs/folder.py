@@ -32,11 +32,16 @@ from .format import (
 
 LARGEST = 1e100  # of a value in SI units: squares and sums of what a run can hold are finite
 WIDTH = 100  # characters of a line that a prompt shows
-# The parameters that a prompt shows, as far as a run has them.
+# The parameters that a prompt shows, as far as a run has them; those of UNLESS where they have another value than
+# the scripts' default.
 SHOWN = (
-    *("packing", "filling", "radius", "grains", "projectileGrains", "velocity", "impact"),
-    *("material", "surfaceEnergy", "grainRadius", "viscoelasticTime", "neck", "finalFilling", "strainRate", "seed"),
+    *("packing", "sizes", "filling", "radius", "grains", "projectileGrains", "target", "velocity", "impact"),
+    *("impactAngle", "spin", "projectileSpin", "material", "layout", "materialFraction", "surfaceEnergy"),
+    *("grainRadius", "viscoelasticTime", "springDamping", "sliding", "rolling", "twisting", "neck", "finalFilling"),
+    *("strainRate", "seed"),
 )
+UNLESS = {"sizes": "equal", "target": "aggregate", **dict.fromkeys(("sliding", "rolling", "twisting"), 1)}
+UNLESS |= dict.fromkeys(("impact", "spin", "projectileSpin", "springDamping"), 0)
 _STATE_NAME = re.compile(r"\d{6}\.npz")
 # numpy's letters of the types that may stand for a quantity's kind, and what to call them.
 _TYPES = {"f": ("fiu", "numbers"), "i": ("iu", "integers"), "b": ("biu", "true or false")}
@@ -125,7 +130,7 @@ class RunFolder:
         """(name, text) of what a prompt shows."""
         time = self.history["time"]
         yield "kind", f"{self.kind.name}, {'ended' if self.ended else 'NOT ENDED'} at {1e9 * time[-1]:.4g} ns"
-        yield "parameters", settings(self.parameters)
+        yield "parameters", settings(self.parameters, self.derived)
         yield "history", f"{len(time)} samples of " + ", ".join(self.history)
         yield "states", f"{len(self.states)}; first and last: .start, .last"
 
@@ -150,17 +155,18 @@ class RunFolder:
         return self.states[index]
 
 
-def settings(parameters):
+def settings(parameters, derived):
     """'packing cpe, velocity 10 m/s, ...': the parameters SHOWN of a run's."""
-    given = ((name, shown(parameters, name)) for name in SHOWN)
-    return ", ".join(_setting(name, value) for name, value in given if value not in (None, ""))
+    given = ((name, shown(parameters, derived, name)) for name in SHOWN)
+    return ", ".join(_setting(name, value) for name, value in given if value not in (None, "", UNLESS.get(name)))
 
 
-def shown(parameters, name):
-    """A run's parameter; None where it has none, and for the surface energy of two materials, which have each their
-    own."""
-    several = name == "surfaceEnergy" and "," in str(parameters.get("material"))
-    return None if several else parameters.get(name)
+def shown(parameters, derived, name):
+    """A run's parameter, None where it has none; as surface energy of several materials a text of theirs, '0.1,0.02'
+    for ice,silicate."""
+    if name == "surfaceEnergy" and "," in str(parameters.get("material")):
+        return ",".join(f"{own[name]:.4g}" for own in derived.get("materials", [])) or None
+    return parameters.get(name)
 
 
 def _setting(name, value):

@@ -83,12 +83,15 @@ def test_a_mixed_collision_counts_mass_closes_its_ledger_and_resumes_to_the_same
 
 
 def test_exports_and_pages_know_the_materials(tmp_path):
-    completed(tmp_path, *MIXED, "velocity=8", "duration=1e-8", "states=2")
+    completed(tmp_path, *MIXED, "velocity=8", "duration=1e-8", "states=2", "sliding=0")
     run = open_run(tmp_path / "run")
+    told = " ".join(repr(run).split())
+    assert "layout mixed, materialFraction 0.3, surfaceEnergy 0.1,0.02 J/m^2, grain" in told and ", sliding 0, " in told
     frame = write_xyz(run, tmp_path / "export").read_text().splitlines()
     column = frame[1].split("Properties=")[1].split(":")
     assert column[column.index("material") + 1 :][:2] == ["I", "1"]
-    assert "silicate" in write_view(run, tmp_path / "run.html").read_text()
+    page = write_view(run, tmp_path / "run.html").read_text()
+    assert "silicate" in page and "= 0.1,0.02 J/m" in page
 
 
 @pytest.mark.parametrize("engine, left_out", [("fused", "sliding"), ("fused", "rolling"), ("functors", "twisting")])

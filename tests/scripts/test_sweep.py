@@ -10,6 +10,7 @@ import pytest
 from running import PYTHON, TOP, call, collide, refusal
 
 import analysis
+from analysis.runs.folder import UNLESS
 from analysis.runs.format import PARAMETER_UNITS, PARAMETER_WORDS
 from yade_scripts import collide as from_python
 from yade_scripts.experiments import collision, compression
@@ -80,3 +81,4 @@ def test_units_and_words_of_parameters_are_the_scripts_own():
     columns = {**collision.KIND.parameters.columns(), **compression.KIND.parameters.columns()}
     assert {name: column.unit for name, column in columns.items() if column.unit} == PARAMETER_UNITS
     assert {name for name, column in columns.items() if column.kind is str} - {"out"} == set(PARAMETER_WORDS)
+    assert {name: columns[name].default for name in UNLESS} == UNLESS

@@ -92,7 +92,7 @@ def _carry_out(kind, scene, schedule, folder, begun):
         else:
             steps, runner, begin = yade_scene.start(scene, schedule, recorder)
         write("running")  # which a killed run keeps
-        print(f"{kind.name}: {settings(run['parameters'])}", flush=True)
+        print(f"{kind.name}: {settings(run['parameters'], run['derived'])}", flush=True)
         if scene.step_choice != "as given":
             print(f"step: {scene.step_choice}", flush=True)
         if moved := scene.derived.get("largestMotion"):
