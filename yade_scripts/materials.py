@@ -80,7 +80,9 @@ class GrainParameters(Parameters):
         Check("a file with a section [NAME] a material", lambda text: text != ""),
         f"file (TOML) of materials of one's own, each with {', '.join(PROPERTIES)}, perhaps grainRadius",
     )
-    materialFraction: float | None = parameter(None, between(0, 1), "of the grains, those of the second material", "1")
+    materialFraction: float | None = parameter(
+        None, between(0, 1), "of the grains, those of the second material; left out where a file has them", "1"
+    )
     layout: str | None = parameter(
         None,
         one_of(LAYOUTS),
@@ -115,11 +117,12 @@ class GrainParameters(Parameters):
             found = self
         else:
             self._require_left_out("with two materials, whose own it is", PROPERTIES)
-            found = self.changed(layout=self.layout or MIXED)
-            if found.layout != PAIR and found.materialFraction is None:
-                raise ParameterError("materialFraction: not given with two materials; must be 0 to 1")
+            by_file = getattr(self, "packing", None) == "file" and self.materialFraction is None
+            found = self if by_file else self.changed(layout=self.layout or MIXED)  # a file may have either of its own
             if found.layout == PAIR:
                 self._require_left_out(f"with layout = {PAIR}", ("materialFraction",))
+            elif found.materialFraction is None and not by_file:
+                raise ParameterError("materialFraction: not given with two materials; must be 0 to 1")
         grains = found.changed(**{name: value for name, value in of_first.items() if getattr(found, name) is None})
         if grains.grainRadius is None:
             raise ParameterError(f"grainRadius: neither given nor in {self.materials}; must be > 0 [m]")

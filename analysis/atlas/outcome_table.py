@@ -25,7 +25,7 @@ COLUMNS = (*PROBABILITIES, *ERRORS, TOUCHING, *LEFT, *OF_KIND, INSIDE, "runs")
 
 SCALES = {"log10": np.log10, "linear": np.asarray}
 OF_MAXWELL = "velocity: rms of a Maxwell distribution"  # a comment of tables that maxwell() has made
-ROUNDING = 1e-9  # of the sum of a query's weights
+ROUNDING = 1e-7  # of the sum of a query's weights; nodes in a file have nine digits
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,8 @@ class Axis:
 
     def beyond(self, value):
         """-1 below the first node, 1 above the last, 0 between, for each value."""
-        return (np.asarray(value) > self.nodes[-1]).astype(int) - (np.asarray(value) < self.nodes[0])
+        first, last = self.nodes[0] * (1 - ROUNDING), self.nodes[-1] * (1 + ROUNDING)
+        return (np.asarray(value) > last).astype(int) - (np.asarray(value) < first)
 
 
 def axes_of(velocity, grains, mass_ratio, filling):

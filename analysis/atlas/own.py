@@ -52,17 +52,19 @@ def outcome_table(runs, file=None, **nodes):
     if not len(known):
         raise Refused(problems[0] if problems else "no run that met and is decided; must be one or more")
     points = variables(found)
-    axes = axes_of(*(_nodes(name, points[name], nodes.get(name)) for name in APART))
+    of_axes, alone = zip(*(_nodes(name, points[name], nodes.get(name)) for name in APART))
+    axes = axes_of(*of_axes)
     shape = [len(axis.nodes) for axis in axes]
-    place = np.column_stack([axis.position(points[axis.name]) for axis in axes])
-    node = np.ravel_multi_index(np.rint(place).astype(int).T, shape)
-    # Fillings last: of aggregates that grow they scatter, and none is chosen by whether it hits.
-    grid = np.indices(shape).reshape(len(axes), -1).T * [1.0, 1.0, 1.0, 1e-3]
+    first = lambda place: np.ravel_multi_index(np.where(alone, 0, place).T, shape)  # both nodes alone are alike
+    node = first(np.rint([axis.position(points[axis.name]) for axis in axes]).astype(int).T)
+    grid = np.indices(shape).reshape(len(axes), -1).T
     there = np.unique(node[found.index.isin(known.index)])
-    nearest = cKDTree(grid[there]).query(grid)[1]
+    # Fillings last: of aggregates that grow they scatter, and none is chosen by whether it hits.
+    distance = np.where(alone, 0.0, [1.0, 1.0, 1.0, 1e-3])
+    nearest = cKDTree(grid[there] * distance).query(grid * distance)[1]
     rows = [_row(own) for _, own in found.groupby(nearest[node])]
     values = pandas.DataFrame(rows).iloc[nearest].reset_index(drop=True)
-    values[INSIDE] = np.isin(np.arange(len(grid)), there)
+    values[INSIDE] = np.isin(first(grid), there)
     values = values[list(COLUMNS)].fillna(0.0).to_numpy(dtype=float).reshape(*shape, -1)
     made = OutcomeTable(axes, COLUMNS, values, tuple(ABOUT.format(runs=len(known)).splitlines()))
     if file is not None:
@@ -71,14 +73,14 @@ def outcome_table(runs, file=None, **nodes):
 
 
 def _nodes(name, values, given):
-    """Nodes (n,), n >= 2, of an axis."""
+    """(nodes (n,), n >= 2, of an axis; whether values lie between two of them as at one)."""
     if given is not None:
-        return np.unique(given)
+        return np.unique(given), False
     found = np.unique(values)
     groups = np.split(found, 1 + np.flatnonzero(np.diff(found) > APART[name] * found[:-1]))
     if len(groups) == 1:
-        return np.array([found[0] * (1 - ROOM), found[-1] * (1 + ROOM)])
-    return np.array([group.mean() for group in groups])
+        return np.array([found[0] * (1 - ROOM), found[-1] * (1 + ROOM)]), True
+    return np.array([group.mean() for group in groups]), False
 
 
 def _row(own):

@@ -10,6 +10,8 @@ exactly: no term is negative, so the root w is found to the last digits even whe
 
 import numpy as np
 
+from ..arrays import numbers
+
 U_PULL_OFF = 6.0 ** (-1.0 / 3.0)
 ENERGY_SCALE = 4.0 * 6.0 ** (1.0 / 3.0)
 
@@ -21,7 +23,7 @@ _ROUNDING = 4e-16
 
 
 def _distance_from_pull_off(normalised_overlap):
-    distance = (np.asarray(normalised_overlap, dtype=float) + PULL_OFF_OVERLAP) + _PULL_OFF_REST
+    distance = (numbers("overlap", normalised_overlap, gaps=True) + PULL_OFF_OVERLAP) + _PULL_OFF_REST
     return np.where((distance < 0) & (distance > -_ROUNDING), 0.0, distance)
 
 
@@ -59,17 +61,19 @@ def normalised_energy(normalised_overlap):
 def contact_radius(overlap, pair):
     """Contact radius a [m] for an overlap [m] (any shape) of a PairConstants; 0 where the grains are apart. A22 eq
     2."""
-    u = contact_radius_root(np.asarray(overlap) / pair.equilibrium_overlap)
+    u = contact_radius_root(_normalised(overlap, pair))
     return np.where(np.isnan(u), 0.0, pair.equilibrium_contact_radius * u * u)[()]
 
 
 def normal_force(overlap, pair):
     """Elastic normal force F_E [N], positive = repulsive, for an overlap [m] (any shape). A22 eq 5."""
-    return pair.pull_off_force * normalised_force(np.asarray(overlap) / pair.equilibrium_overlap)
+    return pair.pull_off_force * normalised_force(_normalised(overlap, pair))
 
 
 def normal_energy(overlap, pair):
     """JKR potential U_n [J] for an overlap [m] (any shape), 0 where the grains are apart. A22 eq 8."""
-    return (
-        pair.pull_off_force * pair.pull_off_overlap * normalised_energy(np.asarray(overlap) / pair.equilibrium_overlap)
-    )
+    return pair.pull_off_force * pair.pull_off_overlap * normalised_energy(_normalised(overlap, pair))
+
+
+def _normalised(overlap, pair):
+    return numbers("overlap", overlap, gaps=True) / pair.equilibrium_overlap

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arrays import numbers
 from . import aggregates
 from .pair_constants import GRAIN_RADIUS, ICE, breaking_velocity, pair_constants
 
@@ -22,6 +23,10 @@ class Measured(NamedTuple):
     error: float
 
 
+def _filling(values):
+    return numbers("filling", values, positive=True, most=1.0)
+
+
 @dataclass(frozen=True)
 class PowerLaw:
     """value ~ filling^exponent, level at MIDDLE, with standard errors that are independent there."""
@@ -33,7 +38,7 @@ class PowerLaw:
 
     def times(self, scale, filling):
         """Measured: scale (float or array) times the law."""
-        ratio = np.asarray(filling, dtype=float) / MIDDLE
+        ratio = _filling(filling) / MIDDLE
         value = scale * self.level * ratio**self.exponent
         return Measured(value, value * np.hypot(self.level_error / self.level, np.log(ratio) * self.exponent_error))
 
@@ -83,7 +88,8 @@ def compressive_strength(filling, material=ICE, grain_radius=RADIUS):
     """
     energy = aggregates.rolling_energy(material.surface_energy, grain_radius, material.critical_rolling)
     scale = aggregates.strength_scale(energy, grain_radius)
-    formula, (fillings, *factors) = aggregates.compressive_strength_dense(filling, scale), COMPRESSIVE
+    filling, (fillings, *factors) = _filling(filling), COMPRESSIVE
+    formula = aggregates.compressive_strength_dense(filling, scale)
     return Measured(*(formula * np.interp(filling, fillings, own, np.nan, np.nan) for own in factors))
 
 

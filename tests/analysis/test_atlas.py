@@ -211,6 +211,8 @@ def test_a_table_of_ones_own_runs_has_their_fractions(tmp_path):
         found = table.lookup(velocity=velocity / breaking_velocity(ICE, 1e-7), **node)
         assert found["runs"] == pytest.approx(runs) and found["p_sticking"] == pytest.approx(sticking)
         assert sum(found[name] for name in PROBABILITIES) == pytest.approx(1)
+    answer = analysis.outcome([20.0, 40.0], 2, 2, 0.46, grain_radius=1e-7, file=file)
+    assert (answer["inside"] == 1).all() and (answer["error_sticking"] > 0.1).all()
 
 
 def test_command_answers_with_the_nearest_runs(capsys):

@@ -47,6 +47,16 @@ def test_grains_of_two_materials_lie_as_the_layout_says_and_every_contact_rests(
     assert len(pairs) >= packing.grains - 1
 
 
+def test_a_script_brings_a_mixed_aggregate_to_rest():
+    """Every second grain becomes silicate."""
+    parameters = CollisionParameters.parse({"material": BOTH[9:], "materialFraction": 0.5, "packing": "bcca"})
+    overlap, kind = overlaps(parameters.of_each()), np.arange(300) % 2
+    rested = packings.brought_to_rest(packings.bcca(300, 1e-7, overlap[0, 0], seed=1), 1e-7, overlap, kind=kind)
+    pairs = packings.contacts(rested)
+    rest = equilibrium_overlaps(rested.radius, pairs, 1e-7, overlap, kind)
+    assert -surface_gaps(rested.position, rested.radius, pairs) == pytest.approx(rest, rel=1e-6) and len(pairs) >= 299
+
+
 def test_a_mixed_aggregate_stays_at_rest_for_2000_t0(tmp_path):
     """Before, half of its contacts broke without an impact."""
     about, history = completed(tmp_path, *MIXED, "velocity=0.01", "duration=3.9e-7", "endWhenApart=0")
@@ -163,7 +173,9 @@ def test_a_packing_file_keeps_the_materials_of_its_grains(tmp_path):
     packing = packings.load(tmp_path / "a.npz")
     assert np.count_nonzero(packing.kind) == 18 and packing.parameters["materials"][1]["name"] == "silicate"
     own = ("packing=file", "file=a.npz", "velocity=3", "duration=1e-8", "threads=1")
-    about, _ = completed(tmp_path, *own, BOTH, "materialFraction=0.3")
+    about, _ = completed(tmp_path, *own, BOTH)
     assert np.array_equal(open_run(tmp_path / "run").start.material[:60], packing.kind)
     assert about["derived"]["materials"][1]["density"] == SILICATE.density
     assert "of grains of ice,silicate, not ice" in refusal(collide(tmp_path, *own, "overwrite=1"))
+    for given in ("materialFraction=0.9", "layout=halves"):
+        assert "as its grains have their materials" in refusal(collide(tmp_path, *own, BOTH, given, "overwrite=1"))

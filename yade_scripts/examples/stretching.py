@@ -16,7 +16,9 @@ from yade_scripts import packings
 GRAINS, RADIUS, VELOCITY = 300, 1e-7, 0.2  # m, m/s: of each end
 ice = JKRMat(young=7e9, poisson=0.25, density=1000, surfaceEnergy=0.1, criticalRolling=0.8e-9, viscoelasticTime=6e-12)
 constants = Ip2_JKRMat_JKRMat_JKRWadaPhys().pairConstants(ice, RADIUS, ice, RADIUS)
-aggregate = packings.bpca(GRAINS, RADIUS, constants["equilibriumOverlap"], seed=1)
+overlap = constants["equilibriumOverlap"]
+aggregate = packings.bpca(GRAINS, RADIUS, overlap, seed=1)
+aggregate = packings.brought_to_rest(aggregate, RADIUS, overlap)
 left, right = np.quantile(aggregate.position[:, 0], (0.1, 0.9))
 for position in aggregate.position:
     O.bodies.append(utils.sphere(position, RADIUS, material=ice))

@@ -6,6 +6,7 @@ from yade_scripts.packings.lattice import cpe, grain_number, maximum_filling
 from yade_scripts.packings.packing import (
     Packing,
     PackingError,
+    brought_to_rest,
     centred,
     characteristic_radius,
     contacts,

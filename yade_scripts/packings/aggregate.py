@@ -19,6 +19,7 @@ from yade_scripts.packings.ballistic import bcca, bpca
 from yade_scripts.packings.lattice import cpe, grain_number
 from yade_scripts.packings.packing import (
     OF_CONTACTS,
+    PackingError,
     brought_to_rest,
     centred,
     largest_piece,
@@ -169,11 +170,11 @@ def with_materials_at_rest(packing, parameters, overlap, index=0):
     each = parameters.of_each()
     if len(each) > 1:
         overlap = overlaps(each)
-        packing = (
-            packing
-            if packing.kind is not None
-            else _of_materials(packing, parameters, _mixed(packing, parameters, index))
-        )
+        if packing.kind is None:
+            packing = _of_materials(packing, parameters, _mixed(packing, parameters, index))
+        elif not (parameters.materialFraction is parameters.layout is None):
+            must = "must be left out, as its grains have their materials"
+            raise PackingError(f"{parameters.file}: given with materialFraction or layout; {must}")
     elif packing.parameters["packing"] == "cpe":  # a lattice, at rest or meant to be as it is
         return packing
     if not parameters.atRest:
@@ -185,6 +186,8 @@ def with_materials_at_rest(packing, parameters, overlap, index=0):
 
 def _mixed(packing, parameters, index):
     """(N,) which material each grain of a packing is of, as `layout` has it."""
+    if parameters.materialFraction is None:
+        raise PackingError(f"{parameters.file}: doesn't say of what its grains are; materialFraction must be given")
     kind, second = np.zeros(packing.grains, dtype=int), round(parameters.materialFraction * packing.grains)
     if parameters.layout == MIXED:
         order = random_stream(parameters.seed, index, 2).permutation(packing.grains)

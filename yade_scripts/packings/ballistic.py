@@ -16,7 +16,7 @@ def bpca(grains, grain_radius, overlap, seed, index=0, radii=None):
 
     Grains come one by one on straight lines, from directions that are uniform on the sphere and with impact parameters
     uniform over the cross-section of the sphere that holds the cluster, and stay where they first touch it. Grains that
-    are then nearer to others than the sum of the radii pull from the first step on (docs/aggregates.md).
+    are then nearer to others than the sum of the radii pull from the first step on, but after brought_to_rest().
 
     Parameters
     ----------

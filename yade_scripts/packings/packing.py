@@ -232,12 +232,31 @@ def at_rest(position, radius, pairs, grain_radius, overlap, kind=None):
         moved = moved + _smallest_motion(normal, pairs, missing, depth / np.max(overlap), len(radius))
 
 
-def brought_to_rest(packing, grain_radius, overlap, pairs=None):
-    """The packing with its contacts at rest, and how far the farthest grain was moved (largestMotion [m]) among its
-    parameters. pairs (M, 2): its contacts, if not those that touch; overlap: as of equilibrium_overlaps(). Raises
-    PackingError where one stays deeper than MOST_PRESSED or comes apart."""
-    pairs = contacts(packing) if pairs is None else pairs
-    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, overlap, packing.kind)
+def brought_to_rest(packing, grain_radius, overlap, pairs=None, kind=None):
+    """The packing with its contacts at rest, by the least motion of the grains.
+
+    Parameters
+    ----------
+    packing : Packing
+    grain_radius, overlap : float
+        Of a grain, and of two such grains at rest [m]; of K materials overlaps (K, K).
+    pairs : (M, 2) array, optional
+        Its contacts, if not those that touch.
+    kind : (N,) array of int, optional
+        Which of several materials each grain is of; by default as the packing has it.
+
+    Returns
+    -------
+    Packing
+        How far the farthest grain was moved, largestMotion [m], is among its parameters.
+
+    Raises
+    ------
+    PackingError
+        Where a contact stays deeper than MOST_PRESSED or comes apart.
+    """
+    pairs, kind = contacts(packing) if pairs is None else pairs, packing.kind if kind is None else np.asarray(kind)
+    position, _, deviation = at_rest(packing.position, packing.radius, pairs, grain_radius, np.asarray(overlap), kind)
     if deviation.min(initial=0.0) <= -1.0 or deviation.max(initial=0.0) >= MOST_PRESSED - 1:
         worst = deviation[np.abs(deviation).argmax()]
         must = f"must be at most {MOST_PRESSED:g}: a looser state"
