@@ -9,6 +9,7 @@ export.textExt, and files that the others write.
 """
 
 import codecs
+import csv
 import locale
 import re
 from dataclasses import dataclass
@@ -23,9 +24,18 @@ from yade_scripts.packings.packing import PackingError
 from yade_scripts.parameters import one_line
 
 FORMATS = "npz, csv, xyz, LAMMPS data or dump, VTK, YAML of pyFracAggregate, text of DustCollider, FracVAL or YADE"
-IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9}
+IN_A_METRE = {"m": 1.0, "cm": 1e2, "mm": 1e3, "um": 1e6, "nm": 1e9, "angstrom": 1e10}
 LAMMPS_UNITS = {"si": "m", "cgs": "cm", "micro": "um", "nano": "nm"}  # its styles of units, as far as we have theirs
-LENGTH = r"(cm|mm|[u\u00b5\u03bc]m|nm|m)"
+METRES = "met(?:re|er)s?"
+SPELLED = {  # as files write them, words in any case
+    "m": f"m|(?i:{METRES})",
+    "cm": f"cm|(?i:centi{METRES})|1e-0?2 m",
+    "mm": f"mm|(?i:milli{METRES})|1e-0?3 m",
+    "um": f"[u\u00b5\u03bc]m|(?i:micro{METRES}|microns?)|1e-0?6 m",
+    "nm": f"nm|(?i:nano{METRES})|1e-0?9 m",
+    "angstrom": "[\u00c5\u212b]|(?i:[a\u00e5]ngstr[o\u00f6]ms?)|1e-10 m",
+}
+LENGTH = f"({'|'.join(SPELLED.values())})"
 COMMENT = ("#", "%", "!", "//")  # what comments begin with: Python, Matlab, Fortran, C
 FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")  # the exponent of a double, 1.0D+00
 POSITIONS = ("position", "positions", "pos", "xyz", "coordinates", "coords", "points", "centers", "centres")
@@ -84,7 +94,7 @@ def read_spheres(path, most, names=None):
             spheres = _of_text(content.decode("utf-8-sig", errors="replace"), names)
         if not 2 <= len(spheres.position) <= most:
             raise ValueError(f"holds {len(spheres.position)} grains; must be 2 to {most}")
-    except (ValueError, RunFolderError) as error:
+    except (ValueError, RunFolderError, csv.Error) as error:
         raise PackingError(f"{path}: {one_line(error).removeprefix(f'{path}: ')}") from None
     return spheres
 
@@ -175,7 +185,7 @@ def _of_text(text, names):
     is_row = lambda line: line.strip() and not line.lstrip().startswith(COMMENT)
     rows = list(filter(is_row, lines[table.first :]))[: table.rows]
     if len(rows) < (table.rows or 1):
-        raise ValueError(f"{len(rows)} rows of numbers; must be {table.rows or '2 or more'}")
+        raise ValueError(f"{table.kind}: {len(rows)} rows of numbers; must be {table.rows or '2 or more'}")
     rows = [FORTRAN.sub("e", line.replace(",", ".") if table.separator == ";" else line) for line in rows]
     try:
         array = np.loadtxt(rows, delimiter=table.separator, usecols=tuple(found.values()), ndmin=2, quotechar='"')
@@ -314,7 +324,7 @@ def _plain(lines):
     second, row = next(used, (at, line))
     separator, unit = next((mark for mark in ";,\t" if mark in line), None), _unit_in(comments)
     head, row = _words(line, separator), _words(row, separator)
-    if len(head) == 1:
+    if len(head) < 2:
         raise ValueError(f"of an unknown format; must be {FORMATS}")
     if not any(map(_is_number, head)):
         if len(row) == len(head) + 1 and not separator:  # of pandas and R: the number of a row has no name
@@ -336,7 +346,8 @@ def _words(line, separator=None):
     """The cells of a line, without a comment and a separator at its end."""
     line = re.sub(r"\s#\s.*", "", line).strip()
     if separator == "\t" or separator and separator in line:
-        return [word.strip() for word in line.rstrip(separator).split(separator)]
+        (words,) = csv.reader([line.rstrip(separator)], delimiter=separator, skipinitialspace=True)
+        return [word.strip() for word in words]
     return re.findall(r'"[^"]*"|[^\s,;]+', re.sub(r"\s+(?=[\[(])", "", line))
 
 
@@ -378,14 +389,15 @@ def _parted(name):
 
 
 def _unit_in(comments):
-    """The unit of length that comments name, as in: lengths in nm, unit: um; None without one."""
-    found = [re.findall(rf"(?:\bin\s+|\bunits?\b[\w ]{{0,12}}[:=\s]\s*){LENGTH}(?![\w/^*])", line) for line in comments]
-    return _unit([unit for units in found for unit in units])
+    """The unit of length that comments name, as in: lengths in nm, unit: um, (nanometres); None without one."""
+    after = rf"(?:\bin\s+|(?:\b|_)units?\b[\w ]{{0,12}}[:=\s]\s*){LENGTH}(?![\w/^*]|\s+per\b)"
+    found = [re.findall(rf"{after}|[\[(]\s*{LENGTH}\s*[\])]", line) for line in comments]
+    return _unit([unit for units in found for pair in units for unit in pair])
 
 
 def _unit(units):
     """The one of IN_A_METRE that all of a list name, as far as they name one; None where none does."""
-    known = {str(unit).replace("\u03bc", "u").replace("\u00b5", "u") for unit in units} & set(IN_A_METRE)
+    known = {name for unit in units for name, spelled in SPELLED.items() if re.fullmatch(spelled, str(unit))}
     if len(known) > 1:
         raise ValueError(f"names several units of length, {', '.join(sorted(known))}; must be in one")
     return next(iter(known), None)
