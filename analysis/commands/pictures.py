@@ -137,10 +137,10 @@ def plot(options):
 
 
 def _add_export(commands):
-    from ..export.fields import CONTACTS, GRAINS
+    from ..export.fields import CONTACTS, GRAINS, UNITS
 
     about = "Write the states of a run as VTK files (run.pvd: open it in ParaView or OVITO) or as extended XYZ\n"
-    about += "(run.xyz: OVITO, ASE), in SI units.\n"
+    about += "(run.xyz: OVITO, ASE), in SI units but for --unit.\n"
     for title, fields in (("grains (v is called velo in run.xyz)", GRAINS), ("contacts (VTK only)", CONTACTS)):
         about += f"\n{title}:"
         about += "".join(f"\n  {f.name:<13} {f.meaning}{f' [{f.unit}]' if f.unit else ''}" for f in fields)
@@ -153,7 +153,8 @@ def _add_export(commands):
     parser.add_argument("--state", metavar="K", type=_state, help="of the states only this one, from 0, or last")
     of_fragment = number(lambda fragment: fragment >= 0 and fragment == int(fragment), "a whole number >= 0")
     parser.add_argument("--fragment", metavar="K", type=of_fragment, help="only the grains of this fragment")
-    parser.add_argument("--unit", choices=("m", "um", "nm"), default="m", help="of mstm and ddscat (default: m)")
+    of_unit = "of lengths in xyz, mstm and ddscat (default: m)"
+    parser.add_argument("--unit", choices=tuple(UNITS), default="m", help=of_unit)
 
 
 def _state(text):
@@ -166,18 +167,17 @@ def export(options):
     from ..export.formats import write_vtk, write_xyz
     from ..export.optics import chosen, write_ddscat, write_mstm
 
-    writers = dict(zip(FORMATS, (write_vtk, write_xyz)))
     run, place = _run_or_file(options.run, "export")
-    run = chosen(run, options.state, options.fragment)
-    if options.format in OPTICS:
-        write = {"mstm": write_mstm, "ddscat": write_ddscat}[options.format]
-        print(printable(write(run, options.out or place, options.unit)))
-        return 0
-    if options.unit != "m":
-        complain(
-            f"--unit {options.unit}: {options.format} is in SI units; must be left out, or with {' or '.join(OPTICS)}"
-        )
+    (run, first), unit, folder = chosen(run, options.state, options.fragment), options.unit, options.out or place
+    if unit != "m" and options.format in ("vtk", "all"):
+        complain(f"--unit {unit}: vtk is in SI units; must be left out, or with xyz, {' or '.join(OPTICS)}")
         return FAILED
+    writers = {
+        "vtk": lambda: write_vtk(run, folder, first),
+        "xyz": lambda: write_xyz(run, folder, unit),
+        "mstm": lambda: write_mstm(run, folder, unit, first),
+        "ddscat": lambda: write_ddscat(run, folder, unit, first),
+    }
     for name in FORMATS if options.format == "all" else (options.format,):
-        print(printable(writers[name](run, options.out or place)), flush=True)
+        print(printable(writers[name]()), flush=True)
     return 0

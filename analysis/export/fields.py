@@ -9,6 +9,8 @@ import numpy as np
 
 from ..measures.periodic_cell import nearest_image
 
+UNITS = {"m": 1.0, "um": 1e-6, "nm": 1e-9}  # of lengths, where a format lets one choose
+
 
 @dataclass(frozen=True)
 class Field:

@@ -4,7 +4,7 @@ ASE).
 VTK: run.pvd -> state_000000.vtm -> state_000000/grains.vtp and contacts.vtp, little-endian, arrays inline in base64,
 neither compressed nor appended, so that ParaView and OVITO both read them (VTK User's Guide, 11th edition, "XML file
 formats"). Extended XYZ: https://github.com/libAtoms/extxyz; a frame for each state in one file. Arrays keep their
-bits in both: numbers of text have 17 digits.
+bits in both, lengths of xyz in metres: numbers of text have 17 digits.
 """
 
 import base64
@@ -14,7 +14,7 @@ import numpy as np
 
 from ..progress import progress
 from ..runs.files import make_folder, replacing, write_file
-from .fields import CONTACTS, exported_states, grain_fields
+from .fields import CONTACTS, GRAINS, UNITS, exported_states, grain_fields
 
 _VTK_TYPES = {"f": ("Float64", "<f8"), "i": ("Int64", "<i8"), "u": ("Int64", "<i8"), "b": ("Int64", "<i8")}
 _XYZ_NAMES = {"v": "velo"}  # where the format has a word of its own for a field
@@ -24,16 +24,17 @@ SPECIES = "X"  # no element
 # ---- VTK ----
 
 
-def write_vtk(run, folder):
-    """Write the states of a RunFolder; returns the Path of the .pvd, which is written last. RunFolderError when a
-    state is damaged or there is none.
+def write_vtk(run, folder, first=0):
+    """Write the states of a RunFolder, numbered from `first` on; returns the Path of the .pvd, which is written last.
+    RunFolderError when a state is damaged or there is none.
 
     Grains are points with the fields of fields.GRAINS. Contacts are lines from the first grain's centre to the second's
     nearest image, with fields.CONTACTS; each has its own two points. `time` [s] and, of a periodic run, `cell_size` [m]
     are field data of the grains. (OVITO 3.17 shows the contacts of an earlier state where a state has none.)"""
     make_folder(folder)
     names, times = [], []
-    for number, exported in enumerate(progress(exported_states(run), "writing states", len(run.states))):
+    states = progress(exported_states(run), "writing states", len(run.states))
+    for number, exported in enumerate(states, first):
         names.append(f"state_{number:06d}")
         times.append(exported.state.time)
         (folder / names[-1]).mkdir(parents=True, exist_ok=True)
@@ -127,32 +128,34 @@ def _array(name, values, tuples=False):
 # ---- extended XYZ ----
 
 
-def write_xyz(run, folder):
-    """Write the states of a RunFolder; returns the file's Path. Columns: species, pos [m] and fields.GRAINS (v is
-    called velo); a frame's line has Time [s] and, of a periodic run, the cell (under a piston not periodic across its
-    planes)."""
+def write_xyz(run, folder, unit="m"):
+    """Write the states of a RunFolder; returns the file's Path. Columns: species, pos and fields.GRAINS (v is called
+    velo); a frame's line has Time [s], length_unit and, of a periodic run, the cell (under a piston not periodic across
+    its planes)."""
     file = folder / "run.xyz"
     make_folder(folder)
     with replacing(file) as out:
         for exported in progress(exported_states(run), "writing states", len(run.states)):
-            _write_frame(out, exported)
+            _write_frame(out, exported, unit)
     return file
 
 
-def _write_frame(out, exported):
+def _write_frame(out, exported, unit):
     state = exported.state
     columns = {"pos": state.position, **grain_fields(exported)}
+    for name in ("pos", *(field.name for field in GRAINS if field.unit == "m")):
+        columns[name] = columns[name] / UNITS[unit]
     properties, formats = ["species:S:1"], [SPECIES]
     for name, array in columns.items():
         width, is_whole = array[0].size, array.dtype.kind in "iu"
         properties.append(f"{_XYZ_NAMES.get(name, name)}:{'I' if is_whole else 'R'}:{width}")
         formats += ["%d" if is_whole else "%.17g"] * width
-    words = [f"Properties={':'.join(properties)}", f"Time={state.time!r}"]
+    words = [f"Properties={':'.join(properties)}", f"Time={state.time!r}", f"length_unit={unit}"]
     if state.cell_size is None:
         words.append('pbc="F F F"')
     else:
         vectors = np.diag(state.cell_size) if state.cell_vectors is None else state.cell_vectors.T  # an edge a row
-        edges = " ".join(f"{number:.17g}" for number in vectors.ravel())
+        edges = " ".join(f"{number:.17g}" for number in vectors.ravel() / UNITS[unit])
         across = () if state.plane_axis is None else state.plane_axis  # planes end the cell
         periodic = " ".join("F" if axis in across else "T" for axis in range(3))
         words += [f'Lattice="{edges}"', f'pbc="{periodic}"']

@@ -11,26 +11,25 @@ from ..progress import progress
 from ..runs.files import make_folder, write_file
 from ..runs.folder import State
 from ..runs.format import STATE
-from .fields import Exported
+from .fields import UNITS, Exported
 
-UNITS = {"m": 1.0, "um": 1e-6, "nm": 1e-9}
 DIPOLES = 8  # along the radius of the smallest grain
 MOST_SITES = 500_000_000
 
 
 def chosen(run, state=None, fragment=None):
     """The RunFolder with one of its states (a number from 0, or "last"), and of each state one fragment's grains
-    (fields.GRAINS; 0 the largest), whole and without the periodic cell unless it spans that. Refused where there is no
-    such one."""
-    states = run.states
+    (fields.GRAINS; 0 the largest), whole and without the periodic cell unless it spans that; and the number of its
+    first state. Refused where there is no such one."""
+    states, first = run.states, 0
     if state is not None:
-        number = len(states) - 1 if state == "last" else int(state)
-        if not 0 <= number < len(states):
+        first = len(states) - 1 if state == "last" else int(state)
+        if not 0 <= first < len(states):
             raise Refused(f"--state {state}: {run.path} has states 0 to {len(states) - 1}")
-        states = (states[number],)
+        states = (states[first],)
     if fragment is not None:
         states = tuple(_fragment(each, fragment) for each in states)
-    return replace(run, states=states)
+    return replace(run, states=states), first
 
 
 def _fragment(state, number):
@@ -64,24 +63,24 @@ def _whole(state):
     return State(**{**vars(state), **whole})
 
 
-def write_mstm(run, folder, unit="m"):
-    """The spheres of each state as NNNNNN.pos, lines of x y z radius about their middle; returns the folder. MSTM's
-    sphere_data_input_file, and what pymstm reads. (Grains in contact overlap a little, which MSTM does not take: give
-    them apart there, by a gap_factor.)"""
+def write_mstm(run, folder, unit="m", first=0):
+    """The spheres of each state as NNNNNN.pos, from the number `first` on, lines of x y z radius about their middle;
+    returns the folder. MSTM's sphere_data_input_file, and what pymstm reads. (Grains in contact overlap a little, which
+    MSTM does not take: give them apart there, by a gap_factor.)"""
     make_folder(folder)
-    for number, state in enumerate(progress(run.states, "writing states")):
+    for number, state in enumerate(progress(run.states, "writing states"), first):
         table = np.column_stack([_middled(state), state.radius]) / UNITS[unit]
         text = "".join(" ".join(f"{value:.12e}" for value in row) + "\n" for row in table)
         write_file(folder / f"{number:06d}.pos", text)
     return folder
 
 
-def write_ddscat(run, folder, unit="m"):
-    """Each state as NNNNNN.dat, DDSCAT's shape file for FROM_FILE: a dipole at every site of a cubic lattice that lies
-    in a grain, with the number of its material from 1; returns the folder. The first line has the lattice's spacing d
-    and the radius a_eff of the sphere of the same volume."""
+def write_ddscat(run, folder, unit="m", first=0):
+    """Each state as NNNNNN.dat, from the number `first` on, DDSCAT's shape file for FROM_FILE: a dipole at every site
+    of a cubic lattice that lies in a grain, with the number of its material from 1; returns the folder. The first line
+    has the lattice's spacing d and the radius a_eff of the sphere of the same volume."""
     make_folder(folder)
-    for number, state in enumerate(progress(run.states, "writing states")):
+    for number, state in enumerate(progress(run.states, "writing states"), first):
         spacing = state.radius.min() / DIPOLES
         sites, material = _dipoles(_middled(state) / spacing, state.radius / spacing, Exported(state, None).material())
         effective = spacing * (3 * len(sites) / (4 * np.pi)) ** (1 / 3)

@@ -9,6 +9,7 @@ from written_runs import MASS, RADIUS, losing, record, state_arrays, write_run
 from analysis.__main__ import main
 from analysis.export.fields import CONTACTS, GRAINS
 from analysis.runs.folder import open_run
+from yade_scripts.packings.spheres import read_spheres
 
 SIZE = np.array([1e-6, 1.5e-6, 2e-6])
 # A plate across z: the cell is periodic along x and y alone.
@@ -140,17 +141,26 @@ def test_xyz_has_every_field_to_the_bit(run):
         assert ('pbc="T T F"' in about) == ("Lattice=" in about) == (state.cell_size is not None)
 
 
+def test_xyz_in_another_unit_is_read_back(run):
+    assert main(["export", str(run.path), "--format", "xyz", "--unit", "um", "--out", str(run.path)]) == 0
+    found, last = read_spheres(str(run.path / "run.xyz"), 5), run.last
+    assert found.unit == "um" and (found.cell is None) == (last.cell_size is None)
+    wanted = [last.position, last.radius] + [np.where([1, 1, 0], SIZE, np.inf)] * (last.cell_size is not None)
+    for ours, lengths in zip((found.position, found.radius, found.cell), wanted):
+        assert ours == pytest.approx(1e6 * lengths, rel=1e-15)
+
+
 def test_optics_codes_get_the_spheres_and_the_dipoles_of_a_fragment(run):
     """x y z radius as MSTM (pymstm) reads them; DDSCAT's dipoles fill the spheres' volume and lie in them."""
     of_last = ["--state", "1", "--fragment", "0", "--unit", "um"]
     for form in ("mstm", "ddscat"):
         assert main(["export", str(run.path), "--format", form, "--out", str(run.path / form), *of_last]) == 0
     state = run.states[1]
-    spheres = np.loadtxt(run.path / "mstm/000000.pos")
+    spheres = np.loadtxt(run.path / "mstm/000001.pos")
     ends = expected(state)[-1][:2]  # of the contacts of grains 0, 1 and 1, 2, as nearest images
     assert spheres[:, 3] == pytest.approx(1e6 * state.radius[:3]) and spheres.shape == (3, 4)
     assert np.diff(spheres[:, :3], axis=0) == pytest.approx(1e6 * np.diff(ends, axis=1)[:, 0])
-    lines = (run.path / "ddscat/000000.dat").read_text().splitlines()
+    lines = (run.path / "ddscat/000001.dat").read_text().splitlines()
     spacing, effective = (float(lines[0].replace(",", "").split()[k]) for k in (2, 6))
     dipoles = np.array([line.split() for line in lines[7:]], dtype=int)
     assert len(dipoles) == int(lines[1].split()[0]) and np.all(dipoles[:, 4:] == 1)
