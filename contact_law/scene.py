@@ -2,6 +2,7 @@
 
 import functools
 import threading
+from numbers import Real
 
 import numpy as np
 
@@ -93,8 +94,8 @@ def set_material(material, **properties):
     Raises
     ------
     ValueError, RuntimeError
-        For a property out of range, or none of these; a time step too long for the new contacts (functors: in the next
-        O.step); a scene without the contact law; and while O.run() is under way (but for PyRunners).
+        For a property out of range, no number or none of these; a time step too long for the new contacts (functors: in
+        the next O.step); a scene without the contact law; and while O.run() is under way (but for PyRunners).
     """
     from yade.wrapper import JKRMat, Omega
 
@@ -102,10 +103,14 @@ def set_material(material, **properties):
     if not isinstance(material, JKRMat):
         material = Omega().materials[material]
     names = ("young", "poisson", "surfaceEnergy", "criticalRolling", "viscoelasticTime")
-    for name in properties.keys() - names:
-        raise ValueError(f"set_material(): {name}: must be one of {', '.join(names)}")
-    kept = {name: getattr(material, name) for name in ("density", *names)}
-    _law("set_material()").setMaterial(material, JKRMat(**{**kept, **properties}))
+    wanted = {name: getattr(material, name) for name in ("density", *names)}
+    for name, value in properties.items():
+        if name not in names:
+            raise ValueError(f"set_material(): {name}: must be one of {', '.join(names)}")
+        if not isinstance(value, Real):
+            raise ValueError(f"set_material(): {name} = {value!r}: must be a number")
+        wanted[name] = float(value)
+    _law("set_material()").setMaterial(material, JKRMat(**wanted))
     material_changes += 1
 
 

@@ -90,6 +90,6 @@ def test_without_it_a_changed_material_is_refused(mover):
     assert "surfaceEnergy of the material of body " in message and "set_material()" in message
     material.surfaceEnergy = 0.1
     assert refusal() == ""
-    for wrong in (dict(young=-1), dict(density=3000), dict(viscoelasticTime=1e-9)):
+    for wrong in (dict(young=-1), dict(density=3000), dict(young=None), dict(viscoelasticTime=1e-9)):
         contact_law.set_material(material, surfaceEnergy=0.1)
         assert message_of(lambda: [contact_law.set_material(material, **wrong), O.step()])  # noqa: B023
