@@ -52,6 +52,11 @@ DENSITY = Usual(100, 23_000, "aerogel to osmium")
 SURFACE = Usual(1e-3, 10, "liquid gases to clean metals")
 ROLLING = Usual(1e-11, 1e-7, "0.2 to 3.2 nm: Dominik & Tielens 1997, Heim et al. 1999")
 DRAG = Usual(1e-15, 1e-6, "1 to 6 ps: A22")
+ADHESIVE = Check(  # as JKRMat
+    "> 0 (all limits of this law follow from adhesion; "
+    "of grains without, YADE's Law2_ScGeom_MindlinPhys_Mindlin is the law)",
+    lambda x: x > 0,
+)
 MIXED, CORE, HALVES, PAIR = LAYOUTS = ("mixed", "core-mantle", "halves", "target-projectile")
 MIXED_FACTOR = "mixedSurfaceEnergyFactor"
 # What a run gives all its pairs, in the order of theory.pair_constants(), and what is usual.
@@ -72,7 +77,10 @@ class GrainParameters(Parameters):
 
     material: str = parameter(
         "ice",
-        Check("a material, or two with a comma between", lambda text: 1 <= len(text.split(",")) <= 2),
+        Check(
+            "a material, or two unlike ones with a comma between",
+            lambda text: len(_names(text)) == len({*_names(text)}) <= 2,
+        ),
         f"whose properties the grains have, each unless it is given below ({VALUES}); ice,silicate: of either",
     )
     materials: str | None = parameter(
@@ -96,7 +104,7 @@ class GrainParameters(Parameters):
     young: float | None = parameter(None, POSITIVE, "Young's modulus", "Pa", usual=YOUNG)
     poisson: float | None = parameter(None, between(0, 0.5), "Poisson's ratio", "1")
     density: float | None = parameter(None, POSITIVE, "density", "kg/m^3", usual=DENSITY)
-    surfaceEnergy: float | None = parameter(None, POSITIVE, "surface energy gamma", "J/m^2", usual=SURFACE)
+    surfaceEnergy: float | None = parameter(None, ADHESIVE, "surface energy gamma", "J/m^2", usual=SURFACE)
     criticalRolling: float | None = parameter(None, POSITIVE, "critical displacement of rolling", "m", usual=ROLLING)
     viscoelasticTime: float = parameter(0.0, NOT_NEGATIVE, "T_vis of drag (A22 eq 7); 0: no drag", "s", usual=DRAG)
     unusual: int = parameter(0, SWITCH, "1: values outside of their usual ranges are meant", of_consequence=False)
@@ -139,7 +147,7 @@ class GrainParameters(Parameters):
     @property
     def material_names(self):
         """Names of the materials, one or two."""
-        return [name.strip() for name in self.material.split(",")]
+        return _names(self.material)
 
     def of_each(self):
         """The same parameters for grains of each material alone, in a list; of one material these."""
@@ -147,6 +155,10 @@ class GrainParameters(Parameters):
         for name in self.material_names[1:]:
             each.append(self.changed(material=name, **{key: getattr(known[name], key) for key in PROPERTIES}))
         return each
+
+
+def _names(text):
+    return [name.strip() for name in text.split(",")]
 
 
 def known_materials(file=None):

@@ -87,6 +87,8 @@ WRONG = {
     "velocity=3000": "velocity = 3000 m/s: must be 1e-06 to 1000 m/s",
     "grains=10.5": "grains = 10.5: not a whole number",
     "grains=100 radius=20": "radius and grains: both given",
+    "material=ice,ice materialFraction=0.3": "material = ice,ice: must be a material, or two unlike ones",
+    "surfaceEnergy=0": "surfaceEnergy = 0: must be > 0 (all limits of this law follow from adhesion",
     "material=iron": "material = iron: no such material; must be one of ice, silicate",
     "packing=bcca grains=1e6": "grains = 1000000: too many for packing = bcca",
     "target=wall neck=0.5": "neck = 0.5: given with target = wall",
