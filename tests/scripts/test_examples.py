@@ -60,7 +60,7 @@ RECORDED = {
 @pytest.mark.parametrize("name", RECORDED)
 def test_recorded_examples_have_their_result_and_a_run_with_a_closed_ledger(name, tmp_path):
     pattern, *ranges = RECORDED[name]
-    folder = f"out={tmp_path}/run" if name == "spin" else str(tmp_path / "run")
+    folder = f"out={tmp_path}/run" if name in ("spin", "sheared_cell") else str(tmp_path / "run")
     found = [float(number) for number in re.search(pattern, example(f"{name}.py", folder)).groups()]
     assert all(low <= number <= high for number, (low, high) in zip(found, ranges)), found
     run = table(tmp_path / "run")
