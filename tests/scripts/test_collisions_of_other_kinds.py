@@ -109,4 +109,6 @@ def test_a_single_grain_hits_an_aggregate(tmp_path):
 def test_random_offsets_are_those_of_the_seed_and_as_often_as_collisions_have_them():
     drawn = [CollisionParameters.parse({"impact": "random", "seed": seed}).impact for seed in range(400)]
     assert drawn[7] == CollisionParameters.parse({"impact": "random", "seed": 7}).impact
+    planar = CollisionParameters.parse({"impact": "random", "seed": 7, "planar": 1, "packing": "bcca"}).impact
+    assert planar == pytest.approx(drawn[7] ** 2)  # uniform in a plane
     assert kstest(np.square(drawn), "uniform").pvalue > 0.01

@@ -50,7 +50,7 @@ class CollisionParameters(AggregateParameters, RunParameters):
         0.0,
         between(0, 1),
         "impact parameter B_off over the sum of the characteristic radii (A22 eq 27; cpe: of the spheres' radii); "
-        f"{RANDOM}: the seed's, its square uniform, as collisions have it",
+        f"{RANDOM}: the seed's, its square uniform, as collisions have it (itself, with planar = 1)",
         "1",
         word=RANDOM,
     )
@@ -114,7 +114,8 @@ class CollisionParameters(AggregateParameters, RunParameters):
         if found.planar and {found.spinAxis, found.projectileSpinAxis} != {"z"}:
             raise ParameterError("spinAxis: given with planar = 1; must be z")
         if found.impact == RANDOM:
-            found = found.changed(impact=float(np.sqrt(random_stream(found.seed, 0, 3).random())))
+            share = random_stream(found.seed, 0, 3).random()  # of the cross-section within
+            found = found.changed(impact=float(share if found.planar else np.sqrt(share)))
         if found.endWhenApart is None:
             found = found.changed(endWhenApart=int(found.duration is None))
         return found
