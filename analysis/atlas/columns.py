@@ -51,6 +51,7 @@ COLUMNS = (
     Column("v_break", "m/s", "(E_break/m0)^(1/2) of the grains"),
     Column("impact", "", "impact parameter over the sum of the characteristic radii (5/3)^(1/2) R_g"),
     Column("seed", "", "of packings that were not read from files", "i"),
+    Column("at_rest", "", "1: contacts were brought to rest before; 0: grown aggregates were as made", "i"),
     Column("grain_radius", "m", "radius of a grain"),
     *_of_bodies(AFTER),
     Column("fragment_index", "", "n of dN/dm ~ m^-n of all pieces but the largest", gaps=True),
@@ -114,6 +115,7 @@ def _scene(run):
         "v_break": breaking_velocity(Material(*(float(derived[name]) for name in names)), radius),
         "impact": float(given["impact"]),
         "seed": int(given["seed"]),
+        "at_rest": int(given.get("atRest", 0)),
         "grain_radius": radius,
     }
 

@@ -26,6 +26,7 @@ STICKING, BOUNCING, _, EROSION, _ = KINDS
 SLOW, ERODING = 5.0, 13.0  # v_break (3.82 m/s for ice); from 13 on most erode, chosen after the runs
 COMPACT, MANY_CONTACTS = 0.4, 6.0
 EQUAL, HEAD_ON = 0.5, 0.5  # mass ratio at least, impact parameter at most
+UNEQUAL = 0.25  # mass ratio from which on to EQUAL it is about 1/3
 GROWING = 5.0, 18.0  # v_break: where the mean growth efficiency falls through 0
 RATIOS = {"below 1/16": (0.0, 1 / 16), "1/16 to 1/4": (1 / 16, 1 / 4), "1/4 to 1": (1 / 4, 1.0)}  # of masses
 
@@ -128,6 +129,12 @@ def _growth(known):
     ratio = beside(critical_speed, of_ratio[0], of_ratio[-1], np.divide)
     what = "critical velocity of BPCA, masses below 1/16 over 1/4 to 1"
     yield Row(what, ratio, (0.75, 1.33), "hardly another: to a third", "Wada 2013")
+    halves = [bpca[(bpca["size"] > bpca["size"].median()) == large] for large in (True, False)]
+    what = "critical velocity of BPCA, larger half over smaller half of targets"
+    yield Row(what, beside(critical_speed, *halves, np.divide), (0.75, 1.33), "not by size: to a third", "Wada 2013")
+    near = [bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)] for low, high in ((UNEQUAL, EQUAL), (EQUAL, 1))]
+    what = "critical velocity of BPCA, masses 1/4 to 1/2 over 1/2 to 1"
+    yield Row(what, beside(critical_speed, *near, np.divide), (0.375, 0.67), "half: to a third", "Hasegawa 2021")
     for name in ("bcca", "cpe", "compressed"):
         found = estimate(critical_speed, known[known.structure == name])
         yield Row(f"critical velocity of {name}, all masses [v_break]", found)

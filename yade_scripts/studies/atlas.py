@@ -134,7 +134,7 @@ def row(scene):
     else:
         target, projectile = scene.grains
         aggregates = {"packing": scene.structure, "grains": target, "projectileGrains": projectile, "seed": scene.seed}
-    row = {"description": scene.name, **aggregates, "atRest": 0, "velocity": f"{scene.velocity:.6g}"}
+    row = {"description": scene.name, **aggregates, "velocity": f"{scene.velocity:.6g}"}
     row |= {"impact": f"{scene.impact:.6g}", "material": scene.material, "grainRadius": GRAIN_RADIUS}
     return {**row, "stepFraction": step(scene), "threads": 1, "states": STATES, "out": f"{RUNS}/{scene.name}"}
 
