@@ -40,7 +40,7 @@
 .SUFFIXES:
 MAKEFLAGS += --no-print-directory
 .DEFAULT_GOAL := all
-STUDIES := elastoplastic viscous compression sintered compressed atlas axes formulas
+STUDIES := elastoplastic viscous compression sintered compressed compaction atlas axes formulas
 .PHONY: $(STUDIES:%=study-%) $(STUDIES:%=gallery-%) all deps clean build gpu headers tried always install uninstall image demo check test \
         test-edits test-newest test-dustpy disk test-viewer test-debian test-arm64 yade-tree \
         test-sanitizers test-slurm before-sintered before-compressed before-atlas gallery bench bench-papers bench-peers peers \

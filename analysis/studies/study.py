@@ -11,7 +11,7 @@ from ..printable import Refused, suggested
 from ..runs.format import COLLISION, PARAMETER_WORDS, same
 from .columns import LARGEST, OUTCOME, VELOCITY, NotMeasured, parameter, row_of
 
-NAMES = ("atlas", "axes", "compressed", "compression", "elastoplastic", "formulas", "sintered", "viscous")
+NAMES = tuple("atlas axes compaction compressed compression elastoplastic formulas sintered viscous".split())
 GALLERY = Path(__file__).resolve().parents[1] / "gallery"
 
 

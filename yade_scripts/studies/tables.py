@@ -13,10 +13,10 @@ from importlib import import_module
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from analysis.printable import meant
+from analysis.studies.study import NAMES as STUDIES
 from yade_scripts.parameters import InputError
 from yade_scripts.run.table import write as write_table
 
-STUDIES = ("atlas", "axes", "compressed", "compression", "elastoplastic", "formulas", "sintered", "viscous")
 EXAMPLES = ("demo", "seeds")  # which no module makes
 
 
