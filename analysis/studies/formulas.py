@@ -27,6 +27,7 @@ from .study import Study
 FILLINGS = 0.1, 0.2, 0.3, 0.4, 0.5
 SET = {"grains": 1024, "strainRate": 1e-6, "material": "ice"}
 ICE = {**SET, "surfaceEnergy": 0.1, "grainRadius": 1e-7, "criticalRolling": 8e-10}
+FITTED = 0.4  # up to which filling: the conductivity was found to be no power law beyond
 PRESSED = 1.05  # the pressure at the end of the compression is that from the final filling over this on
 
 # What is measured of a run.
@@ -140,7 +141,7 @@ def rows(runs):
         found = estimate(mean("coordination"), where(ice, finalFilling=filling))
         yield Row(f"contacts of a grain, φ = {filling}", found)
     for name, (places, words, paper) in VALUES.items():
-        level, n = estimates(power_law(name, places), ice)
+        level, n = estimates(power_law(name, places), ice[ice.finalFilling <= FITTED])
         yield Row(f"{words} at φ = {MIDDLE}, fit", level)
         yield Row(f"n of {words} ∝ φⁿ", n, *paper)
     yield from _dependences(runs, ice)

@@ -21,7 +21,8 @@ LAWS = {  # column of the study: (its filling, law)
 def ice():
     study = find("formulas")
     table = gather(study, [GALLERY / "formulas" / "runs.csv"]).table
-    return where(study.runs(table), **formulas.ICE)
+    runs = where(study.runs(table), **formulas.ICE)
+    return runs[runs.finalFilling <= formulas.FITTED]
 
 
 def fitted(runs, name, places):
