@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import numbers
 from . import aggregates
-from .pair_constants import GRAIN_RADIUS, ICE, breaking_velocity, pair_constants
+from .pair_constants import GRAIN_RADIUS, ICE, MATERIALS, breaking_velocity, pair_constants
 
 MIDDLE = 0.23  # filling factor: about the geometric mean of those measured
 
@@ -26,6 +26,16 @@ class Measured(NamedTuple):
 
 def _filling(values):
     return numbers("filling", values, positive=True, most=1.0)
+
+
+def _radius(material, grain_radius):
+    """[m]; that of ice or silicate where it is None, ValueError for another material."""
+    if grain_radius is None:
+        found = [GRAIN_RADIUS[name] for name, own in MATERIALS.items() if own == material]
+        if not found:
+            raise ValueError("grain_radius: must be given with a material of one's own")
+        return found[0]
+    return grain_radius
 
 
 @dataclass(frozen=True)
@@ -63,7 +73,8 @@ def tensile_strength(filling, surface_energy=ICE.surface_energy, grain_radius=RA
     filling : float or array
     surface_energy : float [J/m^2]
     grain_radius : float [m]
-        The strength goes as surface_energy/grain_radius (Tatsuuma et al. 2019, and here).
+        Runs are of 0.1 J/m^2 and 1e-7 m; that the strength goes as surface_energy/grain_radius is the scaling of
+        Tatsuuma et al. (2019), which the error leaves out.
 
     Returns
     -------
@@ -72,7 +83,7 @@ def tensile_strength(filling, surface_energy=ICE.surface_energy, grain_radius=RA
     return TENSILE.times(surface_energy / ICE.surface_energy * RADIUS / grain_radius, filling)
 
 
-def compressive_strength(filling, material=ICE, grain_radius=RADIUS):
+def compressive_strength(filling, material=ICE, grain_radius=None):
     """Pressure [Pa] of a quasistatic compression at a filling factor: that of Tatsuuma et al. (2023), corrected by a
     factor between those measured; NaN beyond them.
 
@@ -81,12 +92,14 @@ def compressive_strength(filling, material=ICE, grain_radius=RADIUS):
     filling : float or array
     material : theory.Material
         Of which the rolling energy is taken.
-    grain_radius : float [m]
+    grain_radius : float [m], optional
+        By default that of the material in theory.GRAIN_RADIUS.
 
     Returns
     -------
     Measured
     """
+    grain_radius = _radius(material, grain_radius)
     energy = aggregates.rolling_energy(material.surface_energy, grain_radius, material.critical_rolling)
     scale = aggregates.strength_scale(energy, grain_radius)
     filling, (fillings, *factors) = _filling(filling), COMPRESSIVE
@@ -94,25 +107,26 @@ def compressive_strength(filling, material=ICE, grain_radius=RADIUS):
     return Measured(*(formula * np.interp(filling, fillings, own, np.nan, np.nan) for own in factors))
 
 
-def conductivity(filling, material=ICE, grain_radius=RADIUS):
+def conductivity(filling, material=ICE, grain_radius=None):
     """Thermal conductivity through contacts over that of the grains' material, k/k_mat.
 
     Parameters
     ----------
     filling : float or array
     material : theory.Material
-    grain_radius : float [m]
-        It goes as the radius of a contact at rest over that of a grain.
+    grain_radius : float [m], optional
+        By default that of the material in theory.GRAIN_RADIUS. The conductivity goes as the radius of a contact at rest
+        over that of a grain.
 
     Returns
     -------
     Measured
     """
     neck = lambda *grains: pair_constants(*grains).equilibrium_contact_radius / grains[1]
-    return CONDUCTIVITY.times(neck(material, grain_radius) / neck(ICE, RADIUS), filling)
+    return CONDUCTIVITY.times(neck(material, _radius(material, grain_radius)) / neck(ICE, RADIUS), filling)
 
 
-def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=RADIUS):
+def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=None):
     """Velocity [m/s] above which targets lose more mass than they gain, over all impact parameters, of pairs of 64 to
     4,096 grains; bpca: with mass ratios of 1/4 to 1, others with all.
 
@@ -121,10 +135,12 @@ def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=RADIUS):
     structure : str
         Of FRAGMENTATION.
     material : theory.Material
-    grain_radius : float [m]
+    grain_radius : float [m], optional
+        By default that of the material in theory.GRAIN_RADIUS.
 
     Returns
     -------
     Measured
     """
-    return Measured(*(breaking_velocity(material, grain_radius) * number for number in FRAGMENTATION[structure]))
+    scale = breaking_velocity(material, _radius(material, grain_radius))
+    return Measured(*(scale * number for number in FRAGMENTATION[structure]))

@@ -1,5 +1,6 @@
 """theory.measured: constants are the fits of the gallery's runs, and errors hold for clusters that were left out."""
 
+from dataclasses import replace
 from math import hypot
 
 import pandas
@@ -9,7 +10,7 @@ from analysis.studies import formulas
 from analysis.studies.estimates import estimate, estimates, mean, where
 from analysis.studies.gather import gather
 from analysis.studies.study import GALLERY, find
-from analysis.theory import measured
+from analysis.theory import ICE, SILICATE, measured
 
 LAWS = {  # column of the study: (its filling, law)
     "tensile_strength": ("filling", measured.TENSILE),
@@ -80,3 +81,7 @@ def test_strengths_scale_as_their_formulas():
     assert one.value / other.value == pytest.approx(50) and one.error / other.error == pytest.approx(50)
     near, far = measured.conductivity([0.23, 0.4])[1] / measured.conductivity([0.23, 0.4])[0]
     assert near < far and measured.compressive_strength(0.2).error > 0
+    own = measured.fragmentation_velocity("bpca", SILICATE)
+    assert own == measured.fragmentation_velocity("bpca", SILICATE, 6e-7)
+    with pytest.raises(ValueError, match="grain_radius: must be given"):
+        measured.conductivity(0.2, replace(ICE, young=1e9))
