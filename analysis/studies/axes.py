@@ -65,9 +65,13 @@ def prepared(runs):
     return runs.assign(speed=speed, more=runs.stuck - of_base("stuck"), gain=runs.grown - of_base("grown"))
 
 
+def _fast(runs):
+    return (runs.speed > FAST) & runs.grown.notna()
+
+
 def critical_speed(runs):
     """Speed [v_break] above which targets lose more than they gain, by the runs from FAST on; NaN far from them."""
-    runs = runs[(runs.speed > FAST) & runs.grown.notna()]
+    runs = runs[_fast(runs)]
     found = zero_of_fit(runs.speed, runs.grown)
     return found if FAST / 2 < found < 2 * SPEEDS[-1] else np.nan
 
@@ -80,7 +84,7 @@ def rows(runs):
     changed = runs[runs.axis != BASE]
     for (axis, level), own in sorted(changed.groupby(["axis", "level"], sort=False), key=_place):
         what = f"{AXES[axis]}, {level}"
-        found = beside(critical_speed, own, base, np.divide)
+        found = beside(critical_speed, own, base, np.divide, _fast)
         paper = (HARDLY, "hardly another", "A22") if axis == "drag" else ()
         paper = (HARDLY, "hardly another", "A22b") if axis == "rolling" else paper
         yield Row(f"critical velocity over that unchanged: {what}", found, *paper)
@@ -118,7 +122,7 @@ def _changes(runs, column, label):
         place.set(xscale="log", xlim=(SPEEDS[0], SPEEDS[-1]))
         plain_ticks(place, "x")
         place.set_title(title, fontsize=10)
-        place.legend(frameon=False, fontsize=8, loc="lower left")
+        place.legend(frameon=False, fontsize=8, loc="upper left")
     for place in axes[-1]:
         place.set_xlabel("$v/v_{break}$")
     low, high = zip(*(place.get_ylim() for place in axes.ravel()))

@@ -86,12 +86,13 @@ def average(values):
     return Estimate(values.mean(), values.std() / len(values) ** 0.5 if len(values) > 1 else None, len(values))
 
 
-def beside(statistic, one, other, of=np.subtract):
+def beside(statistic, one, other, of=np.subtract, counted=None):
     """Estimate of of(statistic(one), statistic(other)), a difference or a ratio: of the pairs that are in both tables
-    of runs, or of all where none is."""
+    of runs, or of all where none is. counted: which rows (mask) of runs the statistic uses, where they are few."""
     shared = set(one["pair"]) & set(other["pair"])
     one, other = (own[own["pair"].isin(shared)] if shared else own for own in (one, other))
     both = pandas.concat([one.assign(first=True), other.assign(first=False)], ignore_index=True)
+    both = both if counted is None else both[counted(both)]
     return estimate(lambda runs: of(statistic(runs[runs["first"]]), statistic(runs[~runs["first"]])), both)
 
 
