@@ -9,7 +9,7 @@ from ..measures.decided import Pieces, is_recent
 from ..measures.fragments import fragment_labels, fragment_sizes
 from ..measures.motion import pieces_that_can_meet
 from ..measures.outcome import NEVER_MET, UNDECIDED, restitution_of_pieces
-from ..measures.structure import filling_factor, gyration_radius, mean_coordination
+from ..measures.structure import of_members
 from ..runs.files import RunFolderError
 from ..runs.format import CHANNEL_TABLE, LOST_CHANNELS
 from ..runs.ledger import closure, fractions_at, initial_kinetic_energy
@@ -155,15 +155,7 @@ def _pieces(run):
 
 def _body(name, state, members):
     """Columns OF_BODY of the grains of a folder.State in the mask members (N,); NaN where there are none."""
-    values = [np.nan] * len(OF_BODY)
-    if members.any():
-        position, radius = state.position[members], state.radius[members]
-        contacts = state.contact_pairs[members[state.contact_pairs].all(axis=1)]
-        values = [
-            filling_factor(position, radius),
-            mean_coordination(int(members.sum()), contacts),
-            gyration_radius(position, radius),
-        ]
+    values = of_members(state, members) if members.any() else [np.nan] * len(OF_BODY)
     return {f"{kind}_{name}": value for (kind, _, _), value in zip(OF_BODY, values)}
 
 

@@ -111,6 +111,15 @@ def mean_coordination(grains, contact_pairs):
     return 2.0 * len(pairs("contact_pairs", contact_pairs)) / int(numbers("grains", grains, (), least=1, whole=True))
 
 
+def of_members(state, members):
+    """(filling factor, mean coordination, R_g [m]) of the grains of a folder.State in a mask (N,), not empty, by their
+    contacts with each other."""
+    position, radius = state.position[members], state.radius[members]
+    own = state.contact_pairs[members[state.contact_pairs].all(axis=1)]
+    grains = int(members.sum())
+    return filling_factor(position, radius), mean_coordination(grains, own), gyration_radius(position, radius)
+
+
 def inner_coordination(position, contact_pairs, centre, reach):
     """Mean number of contacts of the grains nearer than `reach` to a point; NaN if there is none. position (N,3),
     contact_pairs (M,2), centre (3,) or, one for each grain, (N,3).

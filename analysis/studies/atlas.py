@@ -123,8 +123,9 @@ def _growth(known):
     """Up to which speed targets grow, over all impact parameters: against the mass ratio, and the structure."""
     known = known[known.speed.between(*GROWING)]
     bpca, of_ratio = known[known.structure == "bpca"], []
+    within = lambda low, high: bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)]
     for words, (low, high) in RATIOS.items():
-        of_ratio.append(bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)])
+        of_ratio.append(within(low, high))
         yield Row(f"critical velocity of BPCA, masses {words} [v_break]", estimate(critical_speed, of_ratio[-1]))
     ratio = beside(critical_speed, of_ratio[0], of_ratio[-1], np.divide)
     what = "critical velocity of BPCA, masses below 1/16 over 1/4 to 1"
@@ -132,7 +133,7 @@ def _growth(known):
     halves = [bpca[(bpca["size"] > bpca["size"].median()) == large] for large in (True, False)]
     what = "critical velocity of BPCA, larger half over smaller half of targets"
     yield Row(what, beside(critical_speed, *halves, np.divide), (0.75, 1.33), "not by size: to a third", "Wada 2013")
-    near = [bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)] for low, high in ((UNEQUAL, EQUAL), (EQUAL, 1))]
+    near = within(UNEQUAL, EQUAL), within(EQUAL, 1.0)
     what = "critical velocity of BPCA, masses 1/4 to 1/2 over 1/2 to 1"
     yield Row(what, beside(critical_speed, *near, np.divide), (0.375, 0.67), "half: to a third", "Hasegawa 2021")
     for name in ("bcca", "cpe", "compressed"):

@@ -7,7 +7,7 @@ import pandas
 
 from ..measures.fragments import fragment_labels
 from ..measures.outcome import STICKING
-from ..measures.structure import gyration_radius, mean_coordination
+from ..measures.structure import of_members
 from ..theory import ICE
 from ..theory.aggregates import rolling_energy
 from .columns import CLOSURE, GRAIN_RADIUS, OUTCOME, SEED, VELOCITY, Column, group, parameter, require_papers_grains
@@ -16,7 +16,14 @@ from .estimates import estimate, estimates, mean, where
 from .figures import curves
 from .study import Study
 
-LAW, HARDLY = (-0.125, -0.075), (0.9, 1.1)  # limits of n, about -0.1; of a radius that size changes hardly
+LAW = -0.125, -0.075  # limits of n, about -0.1
+
+
+def energy_of(velocity, grain_radius):
+    """Kinetic energy over N E_roll of N/2 ice grains that hit as many at a velocity [m/s]: m0 v^2/(8 E_roll); arrays
+    broadcast."""
+    roll = rolling_energy(ICE.surface_energy, grain_radius, ICE.critical_rolling)
+    return 4 / 3 * np.pi * ICE.density * grain_radius**3 * velocity**2 / (8 * roll)
 
 
 def _largest(run, row):
@@ -24,8 +31,8 @@ def _largest(run, row):
     require_papers_grains(run)
     state = run.last
     own = fragment_labels(len(state.radius), state.contact_pairs) == 0
-    pairs = state.contact_pairs[own[state.contact_pairs].all(axis=1)]
-    return gyration_radius(state.position[own]), mean_coordination(own.sum(), pairs), own.sum()
+    _, coordination, gyration = of_members(state, own)
+    return gyration, coordination, own.sum()
 
 
 MEASURED = (
@@ -46,10 +53,8 @@ MEASURED = (
 
 def prepared(runs):
     """The table with `energy` over N E_roll, and `size`, R_g/(N^(2/5) r)."""
-    mass = 4 / 3 * np.pi * ICE.density * runs.grain_radius**3
-    roll = rolling_energy(ICE.surface_energy, runs.grain_radius, ICE.critical_rolling)
     size = runs.gyration / runs.grain_radius / (2 * runs.grains) ** 0.4
-    energy = [float(f"{value:.1g}") for value in mass * runs.velocity**2 / 8 / roll]
+    energy = [float(f"{value:.1g}") for value in energy_of(runs.velocity, runs.grain_radius)]
     return runs.assign(energy=energy, size=size, of=[f"2 × {grains:,} grains" for grains in runs.grains])
 
 

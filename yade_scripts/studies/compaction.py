@@ -4,10 +4,9 @@ desk: eight pairs of 512 + 512 grains, four of 2,048 + 2,048, at kinetic energie
 to shrink: runs last three times as long as usual."""
 
 from itertools import product
-from math import pi
 
-from analysis.theory import GRAIN_RADIUS, ICE
-from analysis.theory.aggregates import rolling_energy
+from analysis.studies.compaction import energy_of
+from analysis.theory import GRAIN_RADIUS
 
 RADIUS = GRAIN_RADIUS["ice"]
 ENERGIES = (0.01, 0.03, 0.1, 0.3, 1.0)  # of all N grains, over N E_roll
@@ -17,18 +16,12 @@ HEAD = """Equal BCCA clusters collide head-on: how much they are compacted.
 Units: velocity: m/s; duration: s; stepFraction: t0."""
 
 
-def velocity(energy):
-    """Velocity [m/s] at which N/2 grains on as many have this energy over N E_roll: N m0 v^2/8."""
-    roll = rolling_energy(ICE.surface_energy, RADIUS, ICE.critical_rolling)
-    return (8 * energy * roll / (4 / 3 * pi * ICE.density * RADIUS**3)) ** 0.5
-
-
 def tables():
     """{size: (rows, head)}; the fast ones of each pair first."""
     rows = []
     for grains, seeds in SIZES.items():
         for seed, energy in product(seeds, reversed(ENERGIES)):
-            name, speed = f"N{2 * grains}-E{energy:g}-s{seed}", velocity(energy)
+            name, speed = f"N{2 * grains}-E{energy:g}-s{seed}", (energy / energy_of(1.0, RADIUS)) ** 0.5
             row = {"description": name, "packing": "bcca", "grains": grains, "velocity": f"{speed:.4g}", "impact": 0}
             row |= {
                 "duration": f"{LASTING * (2 * grains) ** 0.5 * RADIUS / speed:.4g}",
