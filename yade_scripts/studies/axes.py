@@ -2,8 +2,9 @@
 necks, rolling, and springs that are missing.
 
 desk: 1,000 pairs of BPCA and BCCA aggregates of 100 ice grains collide as they are, and once more with one thing
-changed on each axis, one level of it for each pair. Velocities are drawn over v_break, the mean E_break of two grains
-over the mean mass of one, so that what scales with it is no change. Rows stand pair by pair."""
+changed on each axis, one level of it for each pair. large: 60 pairs of BPCA aggregates of 2,000 grains about the
+threshold of fragmentation, and once more with each change of LARGE. Velocities are drawn over v_break, the mean E_break
+of two grains over the mean mass of one, so that what scales with it is no change. Rows stand pair by pair."""
 
 from functools import lru_cache
 from math import floor, pi
@@ -15,8 +16,10 @@ from yade_scripts.experiments.collision import CollisionParameters, step_limit
 from yade_scripts.materials import pair_constants
 from yade_scripts.packings.aggregate import EQUAL, radii
 
-PAIRS, GRAINS, SEED = 1000, 100, 50_000
-SPEEDS, STRUCTURES = (2.0, 25.0), ("bpca", "bcca")  # v_break
+SEED = 50_000
+DESK, DESK_GRAINS, DESK_SPEEDS = range(1000), 100, (2.0, 25.0)  # numbers of pairs, grains of each aggregate, v_break
+LARGE, LARGE_GRAINS, LARGE_SPEEDS = range(1000, 1060), 2000, (8.0, 25.0)
+WAY = 48e-6  # m at the collision velocity: duration of large ones, some 3.5 times the default, so that few stay undecided
 LONGEST = 0.2  # step [t0], as of the atlas; a tenth below the limit of stability where that is less
 SAMPLE = 10_000  # radii of which mean energy and mass are taken
 AXES = {  # {axis: {level: what is changed}}
@@ -35,28 +38,41 @@ AXES = {  # {axis: {level: what is changed}}
     "rolling": {"2A": {"criticalRolling": "2e-10"}, "32A": {"criticalRolling": "32e-10"}},
     "springs": {f"no-{spring}": {spring: 0} for spring in ("sliding", "rolling", "twisting")},
 }
-HEAD = """BPCA and BCCA aggregates of 100 grains: as they are, and with one thing changed (row NUMBER-AXIS-LEVEL).
+CHANGES = {f"{axis}-{level}": change for axis, levels in AXES.items() for level, change in levels.items()}
+CHANGES_OF_LARGE = [name for name in CHANGES if name.startswith(("springs", "rolling")) or name == "gamma-0.02"]
+HEAD = """Aggregates of {} ice grains: as they are, and with one thing changed (row NUMBER-AXIS-LEVEL).
 Units: velocity: m/s; viscoelasticTime: s; surfaceEnergy: J/m^2; spin, projectileSpin: rad/s; smallest, largest,
 criticalRolling, grainRadius: m; stepFraction: t0."""
 
 
 def tables():
     """{size: (rows, head)}."""
-    return {"desk": ([row for number in range(PAIRS) for row in rows_of(number)], HEAD)}
+    sizes = {"desk": (DESK, of_desk, DESK_GRAINS), "large": (LARGE, of_large, LARGE_GRAINS)}
+    return {
+        size: ([row for number in numbers for row in of(number)], HEAD.format(f"{grains:,}"))
+        for size, (numbers, of, grains) in sizes.items()
+    }
 
 
-def rows_of(number):
+def of_desk(number):
     """The rows of a pair: unchanged, then one a changed axis."""
+    changed = [f"{axis}-{list(levels)[number % len(levels)]}" for axis, levels in AXES.items()]
+    structure = ("bpca", "bcca")[number // 2 % 2]
+    return rows_of(number, {"packing": structure, "grains": DESK_GRAINS}, DESK_SPEEDS, changed)
+
+
+def of_large(number):
+    for row in rows_of(number, {"packing": "bpca", "grains": LARGE_GRAINS}, LARGE_SPEEDS, CHANGES_OF_LARGE):
+        yield {**row, "duration": f"{WAY / float(row['velocity']):.4g}", "endWhenApart": 1}
+
+
+def rows_of(number, packing, speeds, changed):
+    """The rows of a pair: unchanged, then with each of these CHANGES."""
     draw = np.random.default_rng([SEED, number])
-    speed = SPEEDS[0] * (SPEEDS[1] / SPEEDS[0]) ** draw.random()
-    pair = {"packing": STRUCTURES[number // 2 % 2], "grains": GRAINS, "grainRadius": "1e-7", "seed": SEED + number}
-    pair |= {"impact": f"{draw.random() ** 0.5:.6g}"}
-    changes = {"base-none": {}}
-    for axis, levels in AXES.items():
-        level = list(levels)[number % len(levels)]
-        changes[f"{axis}-{level}"] = levels[level]
-    for name, change in changes.items():
-        given = {**pair, **change}
+    speed = speeds[0] * (speeds[1] / speeds[0]) ** draw.random()
+    pair = {**packing, "grainRadius": "1e-7", "seed": SEED + number, "impact": f"{draw.random() ** 0.5:.6g}"}
+    for name in ("base-none", *changed):
+        given = {**pair, **CHANGES.get(name, {})}
         scale, step = scale_and_step(tuple({**given, "seed": 1, "impact": 0}.items()))
         row = {"description": f"{number:04d}-{name}", **given, "velocity": f"{speed * scale:.6g}"}
         yield {**row, "stepFraction": step, "threads": 1, "states": 9, "out": f"runs/axes/{number:04d}-{name}"}
