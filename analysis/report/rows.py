@@ -121,16 +121,7 @@ def _collision(run):
         numbers.update(d_max=float(maximum.length), t_max=float(maximum.time), maximum_inside=maximum.inside)
         if maximum.inside:
             numbers.update(d_max_error=float(maximum.length_error), t_max_error=float(maximum.time_error))
-    names = (
-        "restitution",
-        "restitution_tangential",
-        "why_undecided",
-        "largest_fragment",
-        "fragments",
-        "growth_efficiency",
-        "mass_on_plate",
-    )
-    numbers.update({name: getattr(outcome, name) for name in names})
+    numbers.update({c.name: getattr(outcome, c.name) for c in OF_COLLISION if hasattr(outcome, c.name)})
     if outcome.kind == NEVER_MET:  # no collision whose growth a mean could have
         numbers["growth_efficiency"] = None
     numbers["released"] = released_before(run.history, time_of_touch(run) if met(run) else np.inf)
