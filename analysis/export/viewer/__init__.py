@@ -30,17 +30,8 @@ def write_view(run, file, three=THREE):
     page = Environment(loader=FileSystemLoader(_HERE), autoescape=True).get_template("page.html")
     data = json.dumps(_data(run)).replace("<", "\\u003c")  # no text in it can end the script
     viewer = (_HERE / "viewer.js").read_text(encoding="utf-8")
-    write_file(
-        file,
-        page.render(
-            title=printable(run.path.resolve().name),
-            ways=COLOURINGS,
-            chosen=_first_colouring(run.start),
-            scripts=scripts,
-            data=data,
-            viewer=viewer,
-        ),
-    )
+    head = {"title": printable(run.path.resolve().name), "ways": COLOURINGS, "chosen": _first_colouring(run.start)}
+    write_file(file, page.render(**head, scripts=scripts, data=data, viewer=viewer))
     return file
 
 
