@@ -102,7 +102,7 @@ def maximum_compression(time, d, v):
     near = slice(k - 1, k + 2)
     vertex_d, vertex_t = _parabola_vertex(time[near], d[near])
     mismatch = np.abs(np.diff(d[near]) - 0.5 * (v[near][1:] + v[near][:-1]) * np.diff(time[near])).max()
-    crossings = _falls_through_zero(time, v)
+    crossings = falls_through_zero(time, v)
     to_crossing = np.abs(crossings - t_max).min() if crossings.size else np.diff(time[near]).max()
     return Maximum(d_max, t_max, max(abs(d_max - vertex_d), mismatch), max(abs(t_max - vertex_t), to_crossing), True)
 
@@ -158,7 +158,7 @@ def _parabola_vertex(t, d):
     return d[1] + 0.5 * slope * shift, t[1] + shift
 
 
-def _falls_through_zero(time, v):
+def falls_through_zero(time, v):
     """Times [s] at which v, linear between samples, falls from positive to zero or below."""
     i = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
     return time[i] + (time[i + 1] - time[i]) * v[i] / (v[i] - v[i + 1])

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas
 
+from ..measures.compression import falls_through_zero
 from ..measures.outcome import NEVER_MET, UNDECIDED
 from ..runs.format import SAME
 
@@ -122,11 +123,8 @@ def threshold(x, y):
     Of mean growth efficiency against velocity: the threshold velocity of fragmentation (Arakawa et al. 2022, section
     3.2)."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    falls = np.flatnonzero((y[:-1] > 0) & (y[1:] <= 0))
-    if not len(falls):
-        return math.nan
-    k = falls[0]
-    return x[k] + (x[k + 1] - x[k]) * y[k] / (y[k] - y[k + 1])
+    falls = falls_through_zero(x, y)
+    return falls[0] if len(falls) else math.nan
 
 
 def zero_of_fit(x, y):
