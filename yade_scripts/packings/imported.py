@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from scipy.spatial import cKDTree
 
 from analysis.measures.fragments import fragment_labels, fragment_sizes
+from analysis.measures.network import images
 from yade_scripts import materials
 from yade_scripts.materials import GrainParameters
 from yade_scripts.packings import Packing, PackingError, centred, contacts, is_packing, largest_piece, load
@@ -214,19 +215,12 @@ def unwrapped(path, position, radius, gap, edges):
     folded[folded == edges] = 0.0  # by rounding
     pairs = cKDTree(folded, boxsize=sides).query_pairs(2 * radius.max() + gap, output_type="ndarray")
     between = position[pairs[:, 1]] - position[pairs[:, 0]]
-    images = -np.round(between / edges)  # of the second grain, beside the first
-    touch = np.linalg.norm(between + images * sides, axis=1) - radius[pairs].sum(axis=1) <= gap
-    (first, second), images = pairs[touch].T, images[touch]
-
-    labels = fragment_labels(len(radius), pairs[touch])
-    image, placed = np.zeros_like(position), np.zeros(len(radius), bool)
-    placed[np.unique(labels, return_index=True)[1]] = True  # one grain of every piece stays
-    while not placed.all():
-        for known, other, step in ((first, second, images), (second, first, -images)):
-            next_to = placed[known] & ~placed[other]
-            image[other[next_to]] = image[known[next_to]] + step[next_to]
-            placed[other[next_to]] = True
-    if np.any(image[first] + images != image[second]):
+    crossed = -np.round(between / edges).astype(int)  # by the second grain, beside the first
+    touch = np.linalg.norm(between + crossed * sides, axis=1) - radius[pairs].sum(axis=1) <= gap
+    pairs, crossed = pairs[touch], crossed[touch]
+    image, labels = images(len(radius), pairs, crossed), fragment_labels(len(radius), pairs)
+    image -= image[np.unique(labels, return_index=True)[1]][labels]  # the first grain of every piece stays
+    if np.any(image[pairs[:, 1]] - image[pairs[:, 0]] != crossed):
         must = "must be an aggregate with room around it, or in coordinates that go on beyond the box"
         raise PackingError(f"{path}: grains touch their own images across the box of the file; {must}")
     return position + image * sides, int(np.any(image, axis=1).sum())
