@@ -14,7 +14,6 @@ class LawFunctor;
 
 class Material : public Serializable, public Indexable {
 public:
-	~Material() override;
 	virtual shared_ptr<State> newAssocState() const;
 	virtual bool stateTypeOk(State*) const;
 	Material() {} // not exported: the defaults below are YADE's
@@ -28,7 +27,6 @@ public:
 
 class Shape : public Serializable, public Indexable {
 public:
-	~Shape() override;
 	YADE_INTERFACE_OVERRIDES_(Shape)
 	REGISTER_INDEX_COUNTER(Shape);
 
@@ -49,7 +47,6 @@ public:
 	enum { DOF_ALL = 63 };
 
 	State();
-	~State() override;
 	YADE_INTERFACE_OVERRIDES_(State)
 	REGISTER_INDEX_COUNTER(State);
 
@@ -72,11 +69,8 @@ public:
 class Body : public Serializable {
 public:
 	using id_t = int;
-	using mask_t = int;
-	using MapId2IntrT = std::map<id_t, shared_ptr<Interaction>>;
 
 	Body();
-	~Body() override;
 	YADE_INTERFACE_OVERRIDES_(Body)
 	const id_t& getId() const { return id; }
 
@@ -85,14 +79,14 @@ public:
 	bool isBounded() const;
 
 	id_t id;
-	mask_t groupMask;
+	int groupMask;
 	int flags;
 	int subdomain;
 	shared_ptr<Material> material;
 	shared_ptr<State> state;
 	shared_ptr<Shape> shape;
 	shared_ptr<Bound> bound;
-	MapId2IntrT intrs; // by the other body's id
+	std::map<id_t, shared_ptr<Interaction>> intrs; // by the other body's id
 	id_t clumpId;
 	long iterBorn;
 	Real timeBorn;
@@ -101,7 +95,6 @@ public:
 class ElastMat : public Material {
 public:
 	ElastMat() { createIndex(); } // not exported; an index of its own, as every class below the topmost
-	~ElastMat() override;
 	YADE_INTERFACE_OVERRIDES_(ElastMat)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -112,7 +105,6 @@ public:
 class Sphere : public Shape {
 public:
 	Sphere();
-	~Sphere() override;
 	YADE_INTERFACE_OVERRIDES_(Sphere)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -123,7 +115,6 @@ public:
 class Wall : public Shape {
 public:
 	Wall();
-	~Wall() override;
 	YADE_INTERFACE_OVERRIDES_(Wall)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -136,7 +127,6 @@ public:
 class IGeom : public Serializable, public Indexable {
 public:
 	IGeom() {}
-	~IGeom() override;
 	YADE_INTERFACE_OVERRIDES_(IGeom)
 	REGISTER_INDEX_COUNTER(IGeom);
 };
@@ -144,7 +134,6 @@ public:
 class IPhys : public Serializable, public Indexable {
 public:
 	IPhys() {}
-	~IPhys() override;
 	YADE_INTERFACE_OVERRIDES_(IPhys)
 	REGISTER_INDEX_COUNTER(IPhys);
 };
@@ -161,7 +150,6 @@ public:
 
 	Interaction();
 	Interaction(Body::id_t id1, Body::id_t id2);
-	~Interaction() override;
 	YADE_INTERFACE_OVERRIDES_(Interaction)
 	boost::python::dict pyDictCustom() const override;
 
@@ -183,7 +171,6 @@ public:
 // Geometry of two touching spheres, as Ig2_Sphere_Sphere_ScGeom makes it. Read here, never derived from.
 class GenericSpheresContact : public IGeom {
 public:
-	~GenericSpheresContact() override;
 	YADE_INTERFACE_OVERRIDES_(GenericSpheresContact)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -200,7 +187,6 @@ class ScGeom : public GenericSpheresContact {
 
 public:
 	ScGeom();
-	~ScGeom() override;
 	YADE_INTERFACE_OVERRIDES_(ScGeom)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -213,7 +199,6 @@ public:
 class NormPhys : public IPhys {
 public:
 	NormPhys();
-	~NormPhys() override;
 	YADE_INTERFACE_OVERRIDES_(NormPhys)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 
@@ -224,7 +209,6 @@ public:
 class NormShearPhys : public NormPhys {
 public:
 	NormShearPhys();
-	~NormShearPhys() override;
 	YADE_INTERFACE_OVERRIDES_(NormShearPhys)
 	YADE_INTERFACE_INDEX_OVERRIDES_
 

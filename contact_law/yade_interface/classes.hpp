@@ -363,6 +363,7 @@ private:                                                                        
    that the class's virtual table is elsewhere. */
 #define YADE_INTERFACE_OVERRIDES_(Class)                                                                                                   \
 public:                                                                                                                                    \
+	~Class() override;                                                                                                                 \
 	std::string getBaseClassName(unsigned int = 0) const override;                                                                     \
 	int getBaseClassNumber() const override;                                                                                           \
 	std::string getClassName() const override;                                                                                         \

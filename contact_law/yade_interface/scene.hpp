@@ -48,7 +48,6 @@ public:
 class Functor : public Serializable {
 public:
 	Functor() {} // not exported
-	~Functor() override;
 	YADE_INTERFACE_OVERRIDES_(Functor)
 	virtual std::vector<std::string> getFunctorTypes() const;
 
@@ -73,7 +72,6 @@ using LawFunctorBase_ = Functor2D<IGeom, IPhys, bool, boost::mpl::vector<shared_
 class IPhysFunctor : public IPhysFunctorBase_ {
 public:
 	IPhysFunctor() {} // not exported
-	~IPhysFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(IPhysFunctor)
 };
 
@@ -81,7 +79,6 @@ public:
 class LawFunctor : public LawFunctorBase_ {
 public:
 	LawFunctor() {} // not exported
-	~LawFunctor() override;
 	YADE_INTERFACE_OVERRIDES_(LawFunctor)
 };
 
@@ -96,7 +93,6 @@ public:                                                                         
 class Engine : public Serializable {
 public:
 	Engine();
-	~Engine() override;
 	YADE_INTERFACE_OVERRIDES_(Engine)
 	virtual bool isActivated();
 	virtual void action();
@@ -116,7 +112,6 @@ public:
 class GlobalEngine : public Engine {
 public:
 	GlobalEngine() {} // not exported
-	~GlobalEngine() override;
 	YADE_INTERFACE_OVERRIDES_(GlobalEngine)
 };
 
@@ -131,7 +126,6 @@ public:
 	};
 	using iterator = boost::filter_iterator<IsThere, ContainerT::iterator>;
 
-	~BodyContainer() override;
 	YADE_INTERFACE_OVERRIDES_(BodyContainer)
 
 	// Always inline: libyade exports functions of these names, whose iterator is another type.
@@ -162,7 +156,6 @@ public:
 	using ContainerT = std::vector<shared_ptr<Interaction>>;
 	using iterator = ContainerT::iterator;
 
-	~InteractionContainer() override;
 	YADE_INTERFACE_OVERRIDES_(InteractionContainer)
 
 	[[gnu::always_inline]] iterator begin() { return linIntrs.begin(); }
@@ -221,7 +214,6 @@ class EnergyTracker : public Serializable {
 	EnergyTracker(); // made by YADE only
 
 public:
-	~EnergyTracker() override;
 	YADE_INTERFACE_OVERRIDES_(EnergyTracker)
 
 	// id is kept by the caller for the name, and starts at -1; reset: the sum starts anew each step. Exported by libpkg_dem. Not safe against
@@ -239,7 +231,6 @@ private:
 class Cell : public Serializable {
 public:
 	Cell();
-	~Cell() override;
 	void integrateAndUpdate(Real dt); // deforms it by velGrad through dt [s]
 	YADE_INTERFACE_OVERRIDES_(Cell)
 
@@ -261,7 +252,6 @@ public:
 class Scene : public Serializable {
 public:
 	Scene();
-	~Scene() override;
 	YADE_INTERFACE_OVERRIDES_(Scene)
 
 private:
