@@ -204,11 +204,8 @@ template <class Archive> void Dynamics::transferLayout(Archive& archive)
 	archive.same(domainCount(), "domains");
 	archive.same(int(options.cell.on), "O.periodic");
 	archive.same(shared.material.size(), "the number of materials");
-	archive.same(shared.pairs.linearDamping, "linearDamping");
-	archive.same(shared.pairs.slidingStiffnessFactor, "slidingStiffnessFactor");
-	archive.same(shared.pairs.rollingStiffnessFactor, "rollingStiffnessFactor");
-	archive.same(shared.pairs.springDamping, "springDamping");
-	archive.same(shared.pairs.mixedSurfaceEnergyFactor, "mixedSurfaceEnergyFactor");
+#define CONTACT_LAW_SAME(name, ...) archive.same(shared.pairs.name, #name);
+	CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_SAME)
 	archive.same(shared.neck, "neck");
 	transferSize(archive, shared.necks);
 	for (double& neck : shared.necks)

@@ -26,14 +26,9 @@ struct MaterialRow {
 	double Material::*member;
 };
 constexpr MaterialRow materialList[] = {
-	{ "young", &Material::young },
-	{ "poisson", &Material::poisson },
-	{ "density", &Material::density },
-	{ "surfaceEnergy", &Material::surfaceEnergy },
-	{ "criticalRolling", &Material::criticalRolling },
-	{ "viscoelasticTime", &Material::viscoelasticTime },
+#define CONTACT_LAW_MATERIAL_ROW(name, ...) { #name, &Material::name },
+	CONTACT_LAW_MATERIAL(CONTACT_LAW_MATERIAL_ROW)
 };
-static_assert(sizeof(Material) == std::size(materialList) * sizeof(double), "every constant of Material has its row");
 
 // In messages: the fewest digits that read back as the same number.
 inline std::string textOf(double number)

@@ -12,7 +12,8 @@ namespace {
 		std::map<std::array<double, std::size(materialList)>, std::pair<int, int>> extremes;
 		for (int k = 0; k < dynamics.grainCount(); ++k) {
 			const Material& m = shared.material[shared.kind[k]];
-			const std::array key { m.young, m.poisson, m.density, m.surfaceEnergy, m.criticalRolling, m.viscoelasticTime };
+#define CONTACT_LAW_OF_MATERIAL(name, ...) m.name,
+			const std::array key { CONTACT_LAW_MATERIAL(CONTACT_LAW_OF_MATERIAL) };
 			auto& [smallest, largest] = extremes.emplace(key, std::pair(k, k)).first->second;
 			if (shared.grainRadius[k] < shared.grainRadius[smallest]) smallest = k;
 			if (shared.grainRadius[k] > shared.grainRadius[largest]) largest = k;

@@ -10,28 +10,44 @@ namespace contact_law {
 constexpr double pi = 3.14159265358979323846;
 constexpr double criticalTwistingAngle = 1 / (16 * pi); // A22 (24), of every pair
 
+// The constants of a material, listed once: name, and symbol with its unit.
+#define CONTACT_LAW_MATERIAL(_)                                                                                                            \
+	_(young, "E [Pa]")                                                                                                                 \
+	_(poisson, "nu")                                                                                                                   \
+	_(density, "rho [kg/m^3]")                                                                                                         \
+	_(surfaceEnergy, "gamma [J/m^2]")                                                                                                  \
+	_(criticalRolling, "xi_crit [m]")                                                                                                  \
+	_(viscoelasticTime, "T_vis [s]")
+
 struct Material {
-	double young;            // E [Pa]
-	double poisson;          // nu
-	double density;          // rho [kg/m^3]
-	double surfaceEnergy;    // gamma [J/m^2]
-	double criticalRolling;  // xi_crit [m]
-	double viscoelasticTime; // T_vis [s]
+#define CONTACT_LAW_NUMBER(name, ...) double name;
+	CONTACT_LAW_MATERIAL(CONTACT_LAW_NUMBER)
 };
 
-// What a scene sets for all its pairs, whatever they are made of.
+/* What a scene sets for all its pairs, whatever they are made of, listed once: name, default, and what it is. From this list follow the
+ * members below, the attributes of functor and engine, and what a checkpoint compares. */
+#define CONTACT_LAW_PAIR_OPTIONS(_)                                                                                                        \
+	_(linearDamping, 0, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none.")                \
+	_(slidingStiffnessFactor, 1,                                                                                                       \
+	        "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of Sirono & Ueno "                         \
+	        "(2017) as printed.")                                                                                                      \
+	_(rollingStiffnessFactor, 1, "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007).")                                          \
+	_(springDamping, 0,                                                                                                                \
+	        "Damps sliding, rolling and twisting springs of ordinary contacts: c of the force k c dD/dt beside k D [s]; 0: they "      \
+	        "ring on.")                                                                                                                \
+	_(mixedSurfaceEnergyFactor, 1, "Surface energy of a contact or bond of two unlike materials over the geometric mean of theirs.")
+
 struct PairOptions {
-	double linearDamping = 0;            // k_n, K13 (4)
-	double slidingStiffnessFactor = 1;   // k_s over A22's (18); 2: of S17's (11) and (12)
-	double rollingStiffnessFactor = 1;   // k_r over A22's (14)
-	double springDamping = 0;            // c of the springs' damping [s] (spring_damping.hpp)
-	double mixedSurfaceEnergyFactor = 1; // gamma of two unlike materials over the geometric mean of theirs
+#define CONTACT_LAW_OPTION(name, usual, ...) double name = usual;
+	CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_OPTION)
 };
 
 inline bool areAlike(const Material& a, const Material& b)
 {
-	return a.young == b.young && a.poisson == b.poisson && a.density == b.density && a.surfaceEnergy == b.surfaceEnergy
-	        && a.criticalRolling == b.criticalRolling && a.viscoelasticTime == b.viscoelasticTime;
+#define CONTACT_LAW_UNLIKE(name, ...)                                                                                                      \
+	if (a.name != b.name) return false;
+	CONTACT_LAW_MATERIAL(CONTACT_LAW_UNLIKE)
+	return true;
 }
 inline double surfaceEnergy(const Material& a, const Material& b, const PairOptions& options)
 {

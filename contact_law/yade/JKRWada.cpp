@@ -37,12 +37,6 @@ namespace {
 	constexpr Real planeRadius = std::numeric_limits<Real>::infinity();
 }
 
-void JKRMat::set(const contact_law::Material& m)
-{
-	young = m.young, poisson = m.poisson, density = m.density;
-	surfaceEnergy = m.surfaceEnergy, criticalRolling = m.criticalRolling, viscoelasticTime = m.viscoelasticTime;
-}
-
 void JKRMat::requireInRange() const
 {
 	requirePositive("JKRMat: young", young, " [Pa]");
@@ -80,6 +74,8 @@ void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) { y
 // The attributes from and to the kernel's constants, one by one.
 #define CONTACT_LAW_TO_KERNEL(name, ...) c.name = name;
 #define CONTACT_LAW_FROM_KERNEL(name, ...) name = c.name;
+
+void JKRMat::set(const contact_law::Material& c) { CONTACT_LAW_MATERIAL(CONTACT_LAW_FROM_KERNEL) }
 
 PairConstants<double> JKRWadaConstants::forKernel() const
 {

@@ -12,9 +12,16 @@ namespace yade {
 inline contact_law::Vec3<double> toKernel(const Vector3r& v) { return { v[0], v[1], v[2] }; }
 inline Vector3r fromKernel(const contact_law::Vec3<double>& v) { return Vector3r(v.x, v.y, v.z); }
 
+// What the kernel's lists have, as YADE attributes.
+#define CONTACT_LAW_PAIR_ATTRIBUTE(name, readByForces, documentation) ((Real, name, 0, Attr::readonly, documentation))
+#define CONTACT_LAW_BOND_ATTRIBUTE(name, documentation) ((Real, name, 0, Attr::readonly, documentation))
+#define CONTACT_LAW_OPTION_ATTRIBUTE(name, usual, documentation) ((Real, name, usual, , documentation))
+#define CONTACT_LAW_CHECKED_OPTION(name, usual, documentation) ((Real, name, usual, Attr::triggerPostLoad, documentation))
+#define CONTACT_LAW_VALUE(name, ...) name,
+
 class JKRMat : public ElastMat {
 public:
-	contact_law::Material forKernel() const { return { young, poisson, density, surfaceEnergy, criticalRolling, viscoelasticTime }; }
+	contact_law::Material forKernel() const { return { CONTACT_LAW_MATERIAL(CONTACT_LAW_VALUE) }; }
 	void set(const contact_law::Material&);
 	void requireInRange() const; // throws std::invalid_argument
 	void postLoad(JKRMat&);      // likewise: when the material is made or loaded, and when an attribute below is set
@@ -36,10 +43,6 @@ public:
 	REGISTER_CLASS_INDEX(JKRMat, ElastMat);
 };
 REGISTER_SERIALIZABLE(JKRMat);
-
-// The constants of the kernel's lists as YADE attributes.
-#define CONTACT_LAW_PAIR_ATTRIBUTE(name, readByForces, documentation) ((Real, name, 0, Attr::readonly, documentation))
-#define CONTACT_LAW_BOND_ATTRIBUTE(name, documentation) ((Real, name, 0, Attr::readonly, documentation))
 
 // Constants, and the materials that they are of; with a plane, the grain's is the first.
 struct KindOfPair {
@@ -173,10 +176,7 @@ class Ip2_JKRMat_JKRMat_JKRWadaPhys : public IPhysFunctor {
 	SharedConstants constants;
 	SharedBonds bonds;
 
-	contact_law::PairOptions options() const
-	{
-		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping, mixedSurfaceEnergyFactor };
-	}
+	contact_law::PairOptions options() const { return { CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_VALUE) }; }
 	void requireInRange(const JKRMat& material1, Real radius1, const JKRMat& material2, Real radius2) const;
 	void requireSameMaterials(const JKRWadaPhys&, const JKRMat& material1, const JKRMat& material2, const Interaction&) const;
 
@@ -198,15 +198,7 @@ public:
 		"start are sintered (Sirono & Ueno 2017): a linear elastic bond holds them "
 		"until one of its modes has the energy pi a^2 gamma (a: the neck's radius). All other contacts are ordinary ones between "
 		"grains that have shrunk by the volume of two necks each.",
-		((Real, linearDamping, 0, Attr::triggerPostLoad, "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. "
-			"2013, eq. 4); 0: none."))
-		((Real, slidingStiffnessFactor, 1, Attr::triggerPostLoad, "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); "
-			"2: eqs 11 and 12 of Sirono & Ueno (2017) as printed."))
-		((Real, rollingStiffnessFactor, 1, Attr::triggerPostLoad, "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
-		((Real, springDamping, 0, Attr::triggerPostLoad, "Damps sliding, rolling and twisting springs of ordinary contacts: c of "
-			"the force k c dD/dt beside k D [s]; 0: they ring on."))
-		((Real, mixedSurfaceEnergyFactor, 1, Attr::triggerPostLoad, "Surface energy of a contact or bond of two unlike materials over "
-			"the geometric mean of theirs."))
+		CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_CHECKED_OPTION)
 		((Real, neck, 0, Attr::triggerPostLoad, "Radius of the necks over that of the grains, up to 0.7 (unlike grains: over 2 r1 "
 			"r2/(r1+r2)); 0: nothing is sintered."))
 		((int, bondsBefore, 1, , "With a neck, contacts made while O.iter is below this are bonds: 1 for those that are there at "

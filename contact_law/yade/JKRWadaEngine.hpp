@@ -28,10 +28,7 @@ class JKRWadaEngine : public GlobalEngine {
 	Settings settings() const;
 	void requireSameSettings() const;
 	contact_law::Dynamics::Options optionsFor(const std::vector<contact_law::Material>&) const;
-	contact_law::PairOptions pairOptions() const
-	{
-		return { linearDamping, slidingStiffnessFactor, rollingStiffnessFactor, springDamping, mixedSurfaceEnergyFactor };
-	}
+	contact_law::PairOptions pairOptions() const { return { CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_VALUE) }; }
 	int threadsOrYades() const;
 	void requireInRange() const;
 	void requireOwnScene() const;
@@ -100,14 +97,7 @@ public:
 			"rounding."))
 		((std::string, instructions, "", , "Instruction set: 'avx512', 'avx2', 'portable', or '' for the best this machine has. "
 			"Another one changes results by rounding."))
-		((Real, linearDamping, 0, , "k_n of the linear normal damping force -k_n (m0/t0) v (Kataoka et al. 2013, eq. 4); 0: none."))
-		((Real, slidingStiffnessFactor, 1, , "k_s of ordinary contacts over 8 a0 G*. 1: Wada et al. (2007); 2: eqs 11 and 12 of "
-			"Sirono & Ueno (2017) as printed."))
-		((Real, rollingStiffnessFactor, 1, , "k_r of ordinary contacts over 4 F_c/R (Wada et al. 2007)."))
-		((Real, springDamping, 0, , "Damps sliding, rolling and twisting springs of ordinary contacts: c of the force k c dD/dt "
-			"beside k D [s]; 0: they ring on."))
-		((Real, mixedSurfaceEnergyFactor, 1, , "Surface energy of a contact or bond of two unlike materials over the geometric mean of "
-			"theirs."))
+		CONTACT_LAW_PAIR_OPTIONS(CONTACT_LAW_OPTION_ATTRIBUTE)
 		((Real, neck, 0, , "Radius of sintered necks over that of the grains, up to 0.7; 0: nothing is sintered. Grains that "
 			"touch at the start are bonded, all others as shrunk as they "
 			"(:yref:`Ip2_JKRMat_JKRMat_JKRWadaPhys.neck`). After sinter(): the largest neck of any bond."))
