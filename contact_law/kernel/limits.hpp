@@ -2,8 +2,6 @@
 // direction kept, and the work that this takes is dissipated. The other rule, of Sirono & Ueno (2017), is cut.hpp.
 #pragma once
 #include "contact.hpp"
-#include <iterator>
-#include <string>
 
 namespace contact_law {
 
@@ -12,14 +10,6 @@ enum class LimitRule {
 	Cut   // the spring is cut there, and a new one without strain takes its place (Sirono & Ueno 2017): cutAtLimits() of cut.hpp
 };
 constexpr const char* limitRuleNames[] = { "held", "cut" };
-
-// Of the rule with a name; -1: there is none.
-inline int limitRuleNumber(const std::string& name)
-{
-	for (int k = 0; k < int(std::size(limitRuleNames)); ++k)
-		if (name == limitRuleNames[k]) return k;
-	return -1;
-}
 
 /* Grains that slide with resistance and roll without: their pointers are freed of the rolling displacement whenever it is beyond the limit
  * of resisted rolling, which takes no force. Pointers that have rolled far from the contact would no longer tell how far grains slid. */

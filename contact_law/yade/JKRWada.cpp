@@ -64,9 +64,9 @@ void requireInRange(const contact_law::PairOptions& options, Real neck)
 
 contact_law::LimitRule limitRuleOf(const std::string& name)
 {
-	const int number = contact_law::limitRuleNumber(name);
-	if (number < 0) throw std::invalid_argument("limit = '" + name + "': must be 'held' or 'cut'");
-	return contact_law::LimitRule(number);
+	for (std::size_t rule = 0; rule < std::size(contact_law::limitRuleNames); ++rule)
+		if (name == contact_law::limitRuleNames[rule]) return contact_law::LimitRule(rule);
+	throw std::invalid_argument("limit = '" + name + "': must be 'held' or 'cut'");
 }
 
 void Ip2_JKRMat_JKRMat_JKRWadaPhys::postLoad(Ip2_JKRMat_JKRMat_JKRWadaPhys&) { yade::requireInRange(options(), neck); }
