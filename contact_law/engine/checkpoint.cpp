@@ -266,9 +266,8 @@ std::vector<double> Dynamics::save()
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_, const std::vector<double>& saved)
-        : options(options_)
 {
-	prepare(grains, materials);
+	prepare(grains, materials, options_);
 	RestoringArchive from { saved };
 	transferLayout(from);
 	loadGrains(grains);

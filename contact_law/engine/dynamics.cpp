@@ -22,9 +22,8 @@ namespace {
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_)
-        : options(options_)
 {
-	prepare(grains, materials);
+	prepare(grains, materials, options_);
 	orderGrains(positionsOf(grains));
 	loadGrains(grains);
 	makeDomains();
@@ -37,9 +36,8 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 }
 
 Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Options& options_, const Inherited& inherited)
-        : options(options_)
 {
-	prepare(grains, materials);
+	prepare(grains, materials, options_);
 	std::set<double> necks;
 	for (const Inherited::Pair& one : inherited.contacts)
 		if (one.neck > 0) necks.insert(one.neck);
@@ -51,9 +49,10 @@ Dynamics::Dynamics(const Grains& grains, const Materials& materials, const Optio
 	sizesWhenOrdered = groupSizes();
 }
 
-void Dynamics::prepare(const Grains& grains, const Materials& materials)
+void Dynamics::prepare(const Grains& grains, const Materials& materials, const Options& options_)
 {
 	if (grains.empty()) throw std::invalid_argument("no grains: at least one sphere is needed");
+	options = options_;
 	count = int(grains.size());
 	for (const GrainInput& g : grains)
 		ids.push_back(g.id);

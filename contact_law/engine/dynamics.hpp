@@ -147,7 +147,7 @@ public:
 	Counters counters() const;
 
 private:
-	void prepare(const Grains&, const Materials&);
+	void prepare(const Grains&, const Materials&, const Options&);
 	void orderGrains(const std::vector<Vec3<double>>& positions); // as given
 	double groupSizes();                                          // sum of their edges [m]
 	void reorder();
