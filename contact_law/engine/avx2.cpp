@@ -17,14 +17,8 @@ namespace avx2 {
 		__m256d v;
 
 		Pack() = default;
-		Pack(__m256d x)
-		        : v(x)
-		{
-		}
-		Pack(double x)
-		        : v(_mm256_set1_pd(x))
-		{
-		}
+		Pack(__m256d x) { v = x; }
+		Pack(double x) { v = _mm256_set1_pd(x); }
 		static Pack load(const double* p) { return _mm256_load_pd(p); }
 		void store(double* p) const { _mm256_store_pd(p, v); }
 	};

@@ -17,14 +17,8 @@ namespace avx512 {
 		__m512d v;
 
 		Pack() = default;
-		Pack(__m512d x)
-		        : v(x)
-		{
-		}
-		Pack(double x)
-		        : v(_mm512_set1_pd(x))
-		{
-		}
+		Pack(__m512d x) { v = x; }
+		Pack(double x) { v = _mm512_set1_pd(x); }
 		static Pack load(const double* p) { return _mm512_load_pd(p); }
 		void store(double* p) const { _mm512_store_pd(p, v); }
 	};

@@ -18,10 +18,7 @@ namespace portable {
 		double v;
 
 		Pack() = default;
-		Pack(double x)
-		        : v(x)
-		{
-		}
+		Pack(double x) { v = x; }
 		static Pack load(const double* p) { return *p; }
 		void store(double* p) const { *p = v; }
 	};
