@@ -15,10 +15,11 @@ inline DampingMoment<double> swapped(DampingMoment<double> m)
 	return m;
 }
 
-inline ContactHistory<double> historyIn(const ContactBlock& b, int k)
-{
-	return { { { b.n1[0][k], b.n1[1][k], b.n1[2][k] }, { b.n2[0][k], b.n2[1][k], b.n2[2][k] } }, b.twist[k] };
-}
+// The k-th of vectors that stand side by side.
+inline Vec3<double> vectorIn(const double (&rows)[3][lanes], int k) { return { rows[0][k], rows[1][k], rows[2][k] }; }
+inline void writeVector(const Vec3<double>& v, double (&rows)[3][lanes], int k) { rows[0][k] = v.x, rows[1][k] = v.y, rows[2][k] = v.z; }
+
+inline ContactHistory<double> historyIn(const ContactBlock& b, int k) { return { { vectorIn(b.n1, k), vectorIn(b.n2, k) }, b.twist[k] }; }
 
 // What both lists share. An unused slot points to two dummy grains, `dummy` and the next one, which touch at equilibrium.
 template <class Block> class SlotList {
@@ -61,12 +62,10 @@ public:
 	ContactHistory<double> history(int slot) const { return historyIn(blocks[slot / lanes], slot % lanes); }
 	void writeHistory(int slot, const ContactHistory<double>& h)
 	{
-		const Vec3<double>&p = h.pointers.n1, &q = h.pointers.n2;
 		Block& b = blocks[slot / lanes];
-		const int k = slot % lanes;
-		b.n1[0][k] = p.x, b.n1[1][k] = p.y, b.n1[2][k] = p.z;
-		b.n2[0][k] = q.x, b.n2[1][k] = q.y, b.n2[2][k] = q.z;
-		b.twist[k] = h.twist;
+		writeVector(h.pointers.n1, b.n1, slot % lanes);
+		writeVector(h.pointers.n2, b.n2, slot % lanes);
+		b.twist[slot % lanes] = h.twist;
 	}
 
 protected:
@@ -134,12 +133,7 @@ public:
 	}
 	double drag(int slot) const { return drags[slot / lanes].drag[slot % lanes]; }
 	double overlap(int slot) const { return drags[slot / lanes].overlap[slot % lanes]; }
-	Vec3<double> velocityBefore(int slot) const
-	{
-		const auto& v = drags[slot / lanes].velocity;
-		const int k = slot % lanes;
-		return { v[0][k], v[1][k], v[2][k] };
-	}
+	Vec3<double> velocityBefore(int slot) const { return vectorIn(drags[slot / lanes].velocity, slot % lanes); }
 	void writeDrag(int slot, double force, double overlap, const Vec3<double>& velocity)
 	{
 		if (!hasDrag) return;
@@ -147,29 +141,20 @@ public:
 		drags[slot / lanes].overlap[slot % lanes] = overlap;
 		writeVelocity(slot, velocity);
 	}
-	void writeVelocity(int slot, const Vec3<double>& v)
-	{
-		auto& to = drags[slot / lanes].velocity;
-		const int k = slot % lanes;
-		to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z;
-	}
+	void writeVelocity(int slot, const Vec3<double>& v) { writeVector(v, drags[slot / lanes].velocity, slot % lanes); }
 	DampingMoment<double> damping(int slot) const
 	{
 		DampingMoment<double> m;
 		if (!isDamped) return m;
-		const auto& from = dampings[slot / lanes].moment;
 		for (const int k : { 0, 1, 2, 3 })
-			*vectorsOf(m)[k] = { from[k][0][slot % lanes], from[k][1][slot % lanes], from[k][2][slot % lanes] };
+			*vectorsOf(m)[k] = vectorIn(dampings[slot / lanes].moment[k], slot % lanes);
 		return m;
 	}
 	void writeDamping(int slot, const DampingMoment<double>& m)
 	{
 		if (!isDamped) return;
-		auto& to = dampings[slot / lanes].moment;
-		for (const int k : { 0, 1, 2, 3 }) {
-			const Vec3<double>& v = *vectorsOf(m)[k];
-			to[k][0][slot % lanes] = v.x, to[k][1][slot % lanes] = v.y, to[k][2][slot % lanes] = v.z;
-		}
+		for (const int k : { 0, 1, 2, 3 })
+			writeVector(*vectorsOf(m)[k], dampings[slot / lanes].moment[k], slot % lanes);
 	}
 	// Into the order of pairs, without unused slots; the next contact starts a block of its own.
 	void sort()

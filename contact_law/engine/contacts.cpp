@@ -13,12 +13,10 @@ ContactNow contactNow(const Dynamics& dynamics, const ContactList& list, int slo
 {
 	const SharedState& shared = dynamics.state();
 	const Contact c = shared.contactOf(list, slot);
-	const Grain &a = shared.grains[c.i], &b = shared.grains[c.j];
-	Vec3<double> separation = separationOf(a, b);
-	const Image image = nearestImage(dynamics.cell(), separation);
+	Image image;
+	const ContactMotion m = shared.motionOf(dynamics.cell(), c.i, c.j, image);
 	ContactNow n { dynamics.given(c.i), dynamics.given(c.j), c.constants, c.history,
-		geometryOf(separation, c.constants.radius1 + c.constants.radius2), {}, velocityOf(a) - velocityOf(b) + image.velocity,
-		image.shift };
+		geometryOf(m.separation, c.constants.radius1 + c.constants.radius2), {}, m.velocity, image.shift };
 	setMaterials(shared, c.i, c.j, n);
 	n.forces = contactForces<AllSprings>(c.constants, n.geometry, c.history, n.velocity);
 	n.forces.drag = c.drag;
@@ -33,11 +31,10 @@ ContactNow contactNow(const Dynamics& dynamics, const BondList& list, int slot)
 {
 	const SharedState& shared = dynamics.state();
 	const Bond b = list.get(slot, shared.commonBond);
-	const Grain &one = shared.grains[b.i], &two = shared.grains[b.j];
-	Vec3<double> separation = separationOf(one, two);
-	const Image image = nearestImage(dynamics.cell(), separation);
-	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), shared.constantsOf(b.i, b.j), b.history, geometryOf(separation, b.rest),
-		{}, velocityOf(one) - velocityOf(two) + image.velocity, image.shift, true, b.constants, b.rest };
+	Image image;
+	const ContactMotion m = shared.motionOf(dynamics.cell(), b.i, b.j, image);
+	ContactNow n { dynamics.given(b.i), dynamics.given(b.j), shared.constantsOf(b.i, b.j), b.history, geometryOf(m.separation, b.rest),
+		{}, m.velocity, image.shift, true, b.constants, b.rest };
 	setMaterials(shared, b.i, b.j, n);
 	n.forces = bondForces(b.constants, n.geometry, b.history);
 	return n;

@@ -106,8 +106,8 @@ void PlaneContacts::stepAll()
 		for (int k = 0; k < count; ++k) {
 			PlaneContact& c = contacts[first + k];
 			if (!(left >> k & 1)) {
-				const Vec3<double> force { out.force[0][k], out.force[1][k], out.force[2][k] };
-				add(c, force, 0.5 * force, { out.torque1[0][k], out.torque1[1][k], out.torque1[2][k] });
+				const Vec3<double> force = vectorIn(out.force, k);
+				add(c, force, 0.5 * force, vectorIn(out.torque1, k));
 			} else if (!step(c))
 				continue;
 			if (&contacts[kept] != &c) contacts[kept] = c;

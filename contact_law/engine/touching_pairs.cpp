@@ -6,7 +6,6 @@ namespace contact_law {
 
 namespace {
 	constexpr double sortingCost = 1; // of a contact, over what one costs a step more for being out of order (measured)
-
 }
 
 TouchingPairs::TouchingPairs(SharedState& shared, int begin_, int end_, int dummy_)
@@ -178,12 +177,11 @@ void TouchingPairs::findCompleted()
 // ---- events ----
 
 namespace {
-	void write(const Vec3<double>& v, double (*to)[lanes], int k) { to[0][k] = v.x, to[1][k] = v.y, to[2][k] = v.z; }
 	void write(const ContactStepResult& r, LaneForces& out, int k)
 	{
-		write(r.force, out.force, k);
-		write(r.torque1, out.torque1, k);
-		write(r.torque2, out.torque2, k);
+		writeVector(r.force, out.force, k);
+		writeVector(r.torque1, out.torque1, k);
+		writeVector(r.torque2, out.torque2, k);
 	}
 }
 
