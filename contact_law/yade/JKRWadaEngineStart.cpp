@@ -96,14 +96,6 @@ contact_law::Dynamics::Options JKRWadaEngine::optionsFor(const std::vector<conta
 	return options;
 }
 
-namespace {
-	std::string nextName()
-	{
-		static std::atomic<int> runs { 0 };
-		return "JKRWadaEngine " + std::to_string(++runs);
-	}
-}
-
 // The grains of the scene, with contacts from the checkpoint, from O.interactions, or where they overlap.
 std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 {
@@ -129,10 +121,11 @@ std::shared_ptr<JKRWadaEngine::Run> JKRWadaEngine::newRun(bool again)
 	options.cell = cell.start(*scene, actsYet() ? Moment::WithinStep : Moment::BetweenSteps);
 	options.convective = SceneCell::convective(*scene);
 	options.planes = grains.planes();
+	static std::atomic<int> runs { 0 };
 	const auto started = [&](auto&&... from) {
-		return std::shared_ptr<Run>(
-		        new Run { grains, contacts, cell, settings(), inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now,
-		                Dynamics(grains.grains(), materials, options, from...), Omega::instance().getScene(), nextName() });
+		return std::shared_ptr<Run>(new Run { grains, contacts, cell, settings(),
+		        inherits ? Dynamics::Onset::Before : Dynamics::Onset::Now, Dynamics(grains.grains(), materials, options, from...),
+		        Omega::instance().getScene(), "JKRWadaEngine " + std::to_string(++runs) });
 	};
 	return continued ? started(savedState) : inherits ? started(inherited) : started();
 }

@@ -44,11 +44,6 @@ namespace {
 	}
 
 	bool isotropic(const Vector3r& inertia) { return inertia[0] == inertia[1] && inertia[1] == inertia[2]; }
-
-	[[noreturn]] void refuseChanged(const std::string& what)
-	{
-		refuseInEngine(what + " was changed after the start: it must stay as it was; make a new engine");
-	}
 }
 
 bool finite(const GrainMotion& g)
@@ -60,23 +55,8 @@ bool finite(const GrainMotion& g)
 
 // ---- at the start ----
 
-SceneGrains::Kept::Kept(const shared_ptr<Body>& b, int kind_)
-        : id(int(b->getId()))
-        , body(b)
-        , state(b->state)
-        , shape(b->shape)
-        , material(b->material.get())
-        , mask(b->groupMask)
-        , flags(b->flags)
-        , kind(kind_)
-{
-}
-
 SceneGrains::Grain::Grain(const shared_ptr<Body>& body, int kind)
-        : Kept(body, kind)
-        , radius(sphere().radius)
-        , mass(state->mass)
-        , inertia(state->inertia[0])
+        : Kept { body, kind }
 {
 	const std::string who = bodyName(id);
 	if (!finite(motionOf(*state))) refuseInEngine(who + " has a position, orientation or velocity that is not a finite number");
@@ -314,7 +294,9 @@ void SceneGrains::requireKept(const Scene& scene) const
 			refuseInEngine(bodyName(grain.id) + ((*scene.bodies)[grain.id] ? " was replaced by another" : " was erased")
 			        + " after the start: bodies must stay; make a new engine");
 	for (const Grain& grain : bodies)
-		if (const char* what = grain.changed()) refuseChanged("the " + std::string(what) + " of " + bodyName(grain.id));
+		if (const char* what = grain.changed())
+			refuseInEngine("the " + std::string(what) + " of " + bodyName(grain.id)
+			        + " was changed after the start: it must stay as it was; make a new engine");
 	requireKeptPlanes(scene);
 }
 

@@ -46,19 +46,19 @@ public:
 
 private:
 	struct Kept { // what a body must stay; pointers are the body's own
-		int id;
 		shared_ptr<Body> body;
-		shared_ptr<State> state;
-		shared_ptr<Shape> shape;
-		const Material* material;
-		int mask, flags, kind;
+		int kind;
+		int id = int(body->getId());
+		shared_ptr<State> state = body->state;
+		shared_ptr<Shape> shape = body->shape;
+		const Material* material = body->material.get();
+		int mask = body->groupMask, flags = body->flags;
 
-		Kept(const shared_ptr<Body>&, int kind);
 		bool isThere(const Scene&) const;
 		const char* changed() const; // what of it, or null
 	};
 	struct Grain : Kept {
-		Real radius, mass, inertia;
+		Real radius = sphere().radius, mass = state->mass, inertia = state->inertia[0];
 
 		Grain(const shared_ptr<Body>&, int kind); // throws std::runtime_error for one that the engine cannot move
 		const Sphere& sphere() const { return static_cast<const Sphere&>(*shape); }
