@@ -16,7 +16,7 @@ ROOMS = [str(TOP / "tests" / room) for room in (".", "scripts", "analysis", "ben
 sys.path.insert(0, str(TOP))
 sys.path += ROOMS
 
-from yade_server import YadeServer, without_absolute_tolerance
+from yade_server import SERVER, without_absolute_tolerance
 
 without_absolute_tolerance()
 
@@ -25,7 +25,6 @@ class YadeFailed(AssertionError):
     """A YADE script ended with a non-zero status; the message holds what it printed."""
 
 
-SERVER = YadeServer()
 TO_CALL = f"import sys\nsys.path[:0] = {[str(TOP), *ROOMS]}\nfrom yade_server import answer\nanswer()\n"
 
 

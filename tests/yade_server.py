@@ -1,11 +1,13 @@
 """One YADE that has started, and runs scripts in processes forked from it: a start takes longer than most scripts.
 
 In YADE: `yade -n -x yade_server.py REQUESTS ANSWERS MODULE...` imports the modules, reads one request a line from the
-file descriptor REQUESTS ({"script", "folder", "timeout", "arguments"}: a Python file, where to run it, seconds or 0,
-what follows the file in sys.argv), runs it as YADE's own main script would be, and writes a line to ANSWERS: its status
-as subprocess has it, a signal's number negative. What the script prints is in FOLDER/stdout and FOLDER/stderr.
+file descriptor REQUESTS ({"script", "folder", "timeout", "arguments", "output"}: a Python file, where to run it,
+seconds or 0, what follows the file in sys.argv, a folder), runs it as YADE's own main script would be, and writes a
+line to ANSWERS: its status as subprocess has it, a signal's number negative. What the script prints is in OUTPUT/stdout
+and OUTPUT/stderr. Without modules a script finds what any script of YADE would.
 """
 
+import atexit
 import importlib
 import importlib.util
 import json
@@ -27,12 +29,13 @@ class YadeServer:
         self.modules, self.environment = modules, environment
         self.process = None
 
-    def run(self, script, folder, timeout=0, arguments=()):
+    def run(self, script, folder, timeout=0, arguments=(), output=""):
         """Exit status of a script (path) run in a folder, a signal's number negative: SIGALRM's after so many seconds.
-        RuntimeError when the YADE has ended."""
+        output: the folder of what it prints, of that one's if relative. RuntimeError when the YADE has ended."""
         if self.process is None or self.process.poll() is not None:
             self._start()
         request = {"script": str(script), "folder": str(folder), "timeout": timeout, "arguments": arguments}
+        request["output"] = str(output)
         print(json.dumps(request), file=self.requests, flush=True)
         answer = self.answers.readline()
         if not answer:
@@ -53,6 +56,10 @@ class YadeServer:
         os.close(theirs)
         os.close(to_us)
         self.requests, self.answers = os.fdopen(ours, "w"), os.fdopen(answers)
+        atexit.register(self.close)
+
+
+SERVER = YadeServer()
 
 
 def serve(requests, answers):
@@ -68,23 +75,26 @@ def serve(requests, answers):
         print(os.waitstatus_to_exitcode(status), file=answers, flush=True)
 
 
-def run(script, folder, timeout, arguments):
-    """Run a script in its folder and return the exit status; the process is the script's own."""
+def run(script, folder, timeout, arguments, output):
+    """Run a script in its folder as YADE does, and return the exit status; the process is the script's own."""
     signal.alarm(timeout)  # ends the process
     os.chdir(folder)
     sys.argv = [script, *arguments]
     for number, name in ((1, "stdout"), (2, "stderr")):
-        os.dup2(os.open(name, os.O_CREAT | os.O_WRONLY), number)
+        os.dup2(os.open(os.path.join(output, name), os.O_CREAT | os.O_WRONLY), number)
     main = vars(sys.modules["__main__"])
     try:
-        with open(script) as file:
-            exec(compile(file.read(), script, "exec"), main)
-        status = 0
+        try:
+            with open(script) as file:
+                exec(compile(file.read(), script, "exec"), main)
+        except SystemExit:
+            raise
+        except BaseException:
+            traceback.print_exc()
+            sys.exit(1)
+        sys.exit(0)
     except SystemExit as end:
         status = end.code if isinstance(end.code, int) else int(end.code is not None)
-    except BaseException:
-        traceback.print_exc()
-        status = 1
     sys.stdout.flush()
     sys.stderr.flush()
     return status
@@ -134,7 +144,8 @@ def _module(path):
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
+    if sys.argv[3:]:
+        sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0]))))
     for name in sys.argv[3:]:
         importlib.import_module(name)
     serve(os.fdopen(int(sys.argv[1])), os.fdopen(int(sys.argv[2]), "w"))

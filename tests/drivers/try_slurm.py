@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE), str(HERE.parent / "scripts")]
+sys.path[:0] = [str(HERE), *(str(HERE.parent / room) for room in ("..", ".", "scripts"))]
 from running import PYTHON, STUDY, TOP, environment, process_writing
 from slurm_loopback import Loopback, NoSlurm
 

@@ -53,8 +53,8 @@ def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     assert "outcome undecided: " in reason and (tmp_path / "run" / "ended").exists()
     command = shlex.split(command.splitlines()[0])
     assert command[-1] == "duration=6e-07"
-    assert "must be longer" in refusal(call(tmp_path, *command[:-1], "duration=2e-7"))
-    assert "velocity: given with continue = run" in refusal(call(tmp_path, *command, "velocity=3"))
+    assert "must be longer" in refusal(forked(tmp_path, *command[3:-1], "duration=2e-7"))
+    assert "velocity: given with continue = run" in refusal(forked(tmp_path, *command[3:], "velocity=3"))
     assert "outcome undecided" in call(tmp_path, *command[:-1], "duration=3.1e-7").stdout
     for wanted, words in (
         ("duration=3e-7", "rows: 1 rows, 1 done"),

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from running import COMPRESS, call, completed, messages, read_arrays, read_json, refusal, states
+from running import COMPRESS, completed, forked, messages, read_arrays, read_json, refusal, states
 from scipy.integrate import trapezoid
 
 from analysis.runs.format import CHANNELS
@@ -14,10 +14,6 @@ from yade_scripts.experiments.compression import KIND, typical_first_filling
 
 SMALL = ("grains=64", "strainRate=1e-4", "stepFraction=0.2", "threads=1")
 completed = partial(completed, script=COMPRESS)
-
-
-def compress(folder, *arguments):
-    return call(folder, "yade", "-n", "-x", COMPRESS, *arguments)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +72,7 @@ def test_pressure_is_the_work_per_volume(run):
 def test_it_ends_at_a_pressure(tmp_path):
     """By the work over the volume in 1000 t0, not before, and long before the largest filling; a cell that is looser
     than stretching would leave it stays."""
-    done = compress(tmp_path, *SMALL, "finalPressure=2e3", "stretch=x", "stretchFilling=0.4", "out=run")
+    done = forked(tmp_path, COMPRESS, *SMALL, "finalPressure=2e3", "stretch=x", "stretchFilling=0.4", "out=run")
     about, history = read_json(tmp_path, "run", "run.json"), read_arrays(tmp_path, "run", "history.npz")
     work, size, last = history["boundaryWork"], volume(history), history["filling"][-1]
     window = int(1000 * about["derived"]["timeUnit"] / np.diff(history["time"])[0] * (1 + 1e-9))
@@ -131,7 +127,7 @@ def test_a_piston_between_plates(tmp_path):
 )
 def test_wrong_parameters_give_one_line(tmp_path, arguments, message):
     others = [text for text in SMALL if text.split("=")[0] != arguments.split("=")[0]]
-    assert refusal(compress(tmp_path, *others, *arguments.split())).startswith(f"compress.py: {message}")
+    assert refusal(forked(tmp_path, COMPRESS, *others, *arguments.split())).startswith(f"compress.py: {message}")
     assert os.listdir(tmp_path) == []
 
 

@@ -5,22 +5,20 @@ import re
 
 import numpy as np
 import pytest
-from running import TOP, call, messages
+from running import TOP, call, forked, messages
+from yade_server import SERVER
 
 from analysis import open_run, table
 from analysis.export.fields import Exported
 
+EXAMPLES = os.path.join(TOP, "yade_scripts", "examples")
 AS_ROOT = {f"{mpi}_ALLOW_RUN_AS_ROOT{end}": "1" for mpi in ("OMPI", "PRTE") for end in ("", "_CONFIRM")}
 
 
 def example(name, *arguments):
     """What an example prints."""
-    script = os.path.join(TOP, "yade_scripts", "examples", name)
-    done = call(TOP, "yade", "-n", "-x", script, *arguments, **AS_ROOT)
-    if done.returncode and name == "machines.py" and arguments != ("0",):
-        pytest.skip("YADE's MPI does not run here")  # Debian 13: not for root without /sys
-    others = [line for line in messages(done) if "hwloc" not in line]  # MPI's, in a system without /sys
-    assert done.returncode == 0 and others == [], done.stderr
+    done = forked(TOP, os.path.join(EXAMPLES, name), *arguments, server=SERVER)
+    assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
@@ -81,8 +79,10 @@ def test_the_cooling_cluster_loses_contacts_and_its_energy_is_accounted_for():
 
 def test_two_workers_have_the_numbers_of_one_process():
     """The blocks collide across the boundary of the domains; but for rounding, as sums have another order."""
-    found = [re.search(r"(\S+) J kinetic", example("machines.py", workers)) for workers in "02"]
-    if not found[1]:
-        pytest.skip("MPI starts no workers here")
-    alone, together = (float(number.group(1)) for number in found)
+    done = call(TOP, "yade", "-n", "-x", os.path.join(EXAMPLES, "machines.py"), "2", **AS_ROOT)
+    if done.returncode or " J kinetic" not in done.stdout:
+        pytest.skip("YADE's MPI does not run here")  # Debian 13: not for root without /sys
+    assert [line for line in messages(done) if "hwloc" not in line] == []  # MPI's, in a system without /sys
+    texts = example("machines.py", "0"), done.stdout
+    alone, together = (float(re.search(r"(\S+) J kinetic", text).group(1)) for text in texts)
     assert together == pytest.approx(alone, rel=1e-9) and alone < 1024 * 4.2e-18 * 25 / 2 * 0.999

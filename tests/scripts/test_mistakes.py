@@ -4,7 +4,7 @@ import shlex
 import sys
 
 import pytest
-from running import PYTHON, SCRIPTS, call, messages
+from running import PYTHON, SCRIPTS, call, collide, refusal
 
 from analysis.__main__ import main as analysis
 from yade_scripts import make_packing, study
@@ -73,9 +73,8 @@ def test_mistakes_get_one_line(folder, capsys, monkeypatch, typed):
 
 @pytest.mark.parametrize("typed", OF_YADE)
 def test_mistakes_in_what_yade_runs(folder, typed):
-    ended = call(folder, "yade", "-n", "-x", f"{SCRIPTS}/collide.py", *shlex.split(typed))
-    (message,) = messages(ended)
-    assert ended.returncode == 2 and message.startswith("collide.py: ") and OF_YADE[typed] in message
+    message = refusal(collide(folder, *shlex.split(typed)))
+    assert message.startswith("collide.py: ") and OF_YADE[typed] in message
 
 
 def test_python_in_place_of_yade_and_a_python_without_the_libraries(folder):
