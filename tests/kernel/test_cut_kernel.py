@@ -7,12 +7,13 @@ import pytest
 def followed(before, trial, limit, steps=400_000):
     """The same by small steps of the way, each spring cut in the step after which it is beyond the limit."""
     way = (np.asarray(trial) - before) / steps
-    x, mean = np.array(before, dtype=float), np.zeros(3)
-    for _ in range(steps):
-        mean += (x + way / 2) / steps
-        x = x + way
-        if x @ x > limit**2:
-            x = np.zeros(3)
+    x, mean, left = np.array(before, dtype=float), np.zeros(3), steps
+    while left:
+        ahead = x + np.arange(1, left + 1)[:, None] * way
+        beyond = (ahead**2).sum(axis=1) > limit**2
+        taken = np.argmax(beyond) + 1 if beyond.any() else left
+        mean += (ahead[:taken] - way / 2).sum(axis=0) / steps
+        x, left = np.zeros(3) if beyond.any() else ahead[-1], left - taken
     return x, mean
 
 

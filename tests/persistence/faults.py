@@ -20,6 +20,7 @@ TOP = os.path.dirname(
 KILLED, DISK_FULL = "killed", "disk full"
 OF_RUNS = ["script", "scene"]
 MODULES = ["contact_law", "yade_scripts.experiments.collision", *(f"yade_scripts.run.{name}" for name in OF_RUNS)]
+MODULES += ["yade_scripts.experiments.compression", "analysis.figures.draw", "analysis.export.viewer"]
 COLLIDE = "yade_scripts/collide.py"
 RECORDER = "checkpoint/recorder.npz"
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.

@@ -76,8 +76,7 @@ def test_the_step_of_every_row_is_stable(paths):
     for row in (row for path in paths.values() for row in rows.read(path)):
         assert not row.error
         p = row.parameters
-        files = {"file": None, "projectileFile": None} if hasattr(p, "file") else {}
-        alike = repr(p.changed(seed=1, out="", **files))
+        alike = repr({**p.as_dict(), **dict.fromkeys(("seed", "out", "file", "projectileFile"))})
         if alike in known:
             continue
         known.add(alike)
