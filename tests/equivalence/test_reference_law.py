@@ -78,19 +78,18 @@ def grains(name):
         "cluster": lambda: cluster(10, 5, [one, other], [1e-7, 1.6e-7, 1.3e-7], speed=6, spin=1e8),
         "cut": lambda: converging(12, 1, [one, other], [1e-7, 1.5e-7], speed=12),
         "cut-viscous": lambda: cluster(10, 5, [viscous, soft_viscous], [1e-7, 1.3e-7], speed=6, spin=1e8),
-        "S17's sliding": lambda: converging(12, 1, [one, other], [1e-7, 1.5e-7], speed=12),
-        "stiff rolling": lambda: converging(12, 2, [one, other], [1e-7, 1.5e-7], speed=20),
+        "factors": lambda: converging(12, 2, [one, other], [1e-7, 1.5e-7], speed=20),
         "springs damped": lambda: cluster(10, 5, [one, other], [1e-7, 1.6e-7, 1.3e-7], speed=6, spin=1e8),
         "springs damped, met": lambda: converging(12, 3, [viscous], [1e-7], speed=12),
         "springs damped, cut": lambda: cluster(10, 5, [viscous, soft_viscous], [1e-7, 1.3e-7], speed=6, spin=1e8),
         "springs damped, bonded": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
-        "mixed, clinging": lambda: converging(12, 2, [one, other], [1e-7, 1.5e-7], speed=20),
         "mixed, bonded": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
         "bonded": lambda: cluster(12, 4, [one], [1e-7], speed=10, spin=2e8),
         "bonded-viscous": lambda: cluster(12, 7, [viscous, soft_viscous], [1e-7, 1.5e-7], speed=15, spin=1e8),
     }[name]
 
 
+FACTORS = {"sliding_factor": 2.5, "rolling_factor": 8, "mixed_factor": 2.5}
 # Time steps, what else the scene has, and the channels that must be at work.
 CASES = {
     "collision": (300, {}, "sliding rolling twisting connection disconnection"),
@@ -98,15 +97,13 @@ CASES = {
     "viscous": (300, {}, "sliding rolling twisting connection disconnection drag"),
     "damped": (300, {"damping": 0.01}, "sliding rolling twisting connection disconnection drag"),
     "cluster": (300, {}, "sliding rolling twisting disconnection"),
-    "cut": (300, {"limit": "cut"}, "sliding rolling twisting connection"),
+    "cut": (300, {"limit": "cut", "sliding_factor": 2}, "sliding rolling twisting connection"),
     "cut-viscous": (300, {"limit": "cut"}, "sliding rolling twisting drag"),
-    "S17's sliding": (300, {"limit": "cut", "sliding_factor": 2}, "sliding rolling twisting connection"),
-    "stiff rolling": (300, {"sliding_factor": 2.5, "rolling_factor": 8}, "sliding rolling twisting connection"),
+    "factors": (300, FACTORS, "sliding rolling twisting connection"),
     "springs damped": (300, {"spring_damping": 1e-11}, "sliding rolling twisting disconnection springDamping"),
     "springs damped, met": (300, {"spring_damping": 1e-11}, "sliding rolling twisting connection drag springDamping"),
     "springs damped, cut": (300, {"limit": "cut", "spring_damping": 1e-11}, "sliding rolling twisting springDamping"),
     "springs damped, bonded": (250, {"neck": 0.5, "step": 0.05, "spring_damping": 1e-11}, "bondBreaking springDamping"),
-    "mixed, clinging": (300, {"mixed_factor": 2.5}, "sliding rolling twisting connection"),
     "mixed, bonded": (250, {"neck": 0.5, "step": 0.05, "mixed_factor": 0.4}, "bondBreaking sliding rolling twisting"),
     "bonded": (250, {"neck": 0.3, "step": 0.05}, "bondBreaking sliding rolling twisting"),
     "bonded-viscous": (250, {"neck": 0.5, "step": 0.05}, "bondBreaking sliding rolling twisting drag"),

@@ -117,7 +117,7 @@ def test_runs_that_are_in_no_fit_keep_to_the_tolerance(tmp_path):
         for k, scene in enumerate(scenes)
     ]
     write(tmp_path / "scenes.table", rows)
-    done = study(tmp_path, "scenes.table")
+    done = study(tmp_path, "scenes.table", "-j", "1")
     assert done.returncode == 0, done.stderr
     found = table(tmp_path / "runs")
     assert list(found.run) == [f"{k:02}" for k in range(len(scenes))]

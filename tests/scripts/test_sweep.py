@@ -57,7 +57,8 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
 def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
-        from_python(folder="own", radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
+        own = dict(folder="own", jobs=1, unusual=1, duration=10e-9, stepFraction=0.4)
+        from_python(radius=5, velocity=[10, 3000], **own)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
     assert "\n2 runs; 1 undecided" in capsys.readouterr().out
     monkeypatch.setenv("PATH", "")
@@ -67,8 +68,8 @@ def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monk
 
 def test_a_table_of_outcomes_counts_the_pairs_that_never_met(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    pairs = dict(packing="bcca", grains=24, projectileGrains=6, impact="random", seed=range(8))
-    runs = from_python(velocity=[5, 20], duration=4e-6, endWhenApart=1, **pairs)
+    pairs = dict(packing="bcca", grains=24, projectileGrains=6, impact="random", seed=range(8), states=2)
+    runs = from_python(jobs=1, velocity=[5, 20], duration=2e-6, endWhenApart=1, **pairs)
     missed = (runs.outcome == "never met").sum()
     table = analysis.outcome_table(runs)
     of = lambda name: table.column(name)[:, 0, 0]  # of grains and mass ratio both nodes are alike
