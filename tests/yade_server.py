@@ -34,8 +34,7 @@ class YadeServer:
         output: the folder of what it prints, of that one's if relative. RuntimeError when the YADE has ended."""
         if self.process is None or self.process.poll() is not None:
             self._start()
-        request = {"script": str(script), "folder": str(folder), "timeout": timeout, "arguments": arguments}
-        request["output"] = str(output)
+        request = dict(script=str(script), folder=str(folder), timeout=timeout, arguments=arguments, output=str(output))
         print(json.dumps(request), file=self.requests, flush=True)
         answer = self.answers.readline()
         if not answer:

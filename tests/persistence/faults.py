@@ -18,9 +18,7 @@ TOP = os.path.dirname(
     os.path.dirname(os.path.dirname(os.path.abspath(sys.argv[0] if __name__ == "__main__" else __file__)))
 )
 KILLED, DISK_FULL = "killed", "disk full"
-OF_RUNS = ["script", "scene"]
-MODULES = ["contact_law", "yade_scripts.experiments.collision", *(f"yade_scripts.run.{name}" for name in OF_RUNS)]
-MODULES += ["yade_scripts.experiments.compression", "analysis.figures.draw", "analysis.export.viewer"]
+OF_PICTURES = ("analysis.figures.draw", "analysis.export.viewer")
 COLLIDE = "yade_scripts/collide.py"
 RECORDER = "checkpoint/recorder.npz"
 # Six steps of a few grains that fly past each other, so that the end is decided; a checkpoint after each, four states.
@@ -52,8 +50,10 @@ class Forks:
     def __init__(self, folder):
         from yade_server import YadeServer
 
+        from yade_scripts.runner.worker import LOADED
+
         self.folder = Path(folder)
-        self._yade = YadeServer(MODULES, {**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self._yade = YadeServer([*LOADED, *OF_PICTURES], {**os.environ, "OPENBLAS_NUM_THREADS": "1"})
         self.close = self._yade.close
 
     def run(self, arguments, run, call=0, fault=KILLED):

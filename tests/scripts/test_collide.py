@@ -125,6 +125,8 @@ def test_slow_aggregates_meet_within_the_default_duration(tmp_path):
         ("neck=0.2 stepFraction=0.2", "stepFraction = 0.2: unstable at this neck, filling and drag"),
         ("filling=0.1 radius=12", "aggregate 0 is in crumbs"),
         ("table=rows.table:3", "velocity = fast: not a finite number"),
+        ("velocity 3", "argument 'velocity': not understood"),
+        ("packing=file file=rows.table", "rows.table: not a packing"),
     ],
 )
 def test_what_yade_or_the_contact_refuses_gives_one_line_and_runs_nothing(tmp_path, arguments, message):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from running import completed, read_arrays, read_json
+from running import completed
 from scipy.stats import kstest
 
 from analysis.runs.folder import open_run
@@ -42,16 +42,9 @@ def test_aggregates_that_pass_each_other(tmp_path):
 RUN = ("radius=8", "velocity=30", "duration=400e-9", "threads=1", "stepFraction=0.2", "states=3")
 
 
-@pytest.fixture(scope="module")
-def shorter(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("shorter")
-    completed(folder, *RUN, "impactStepFraction=0.06")
-    return folder / "run"
-
-
-def test_samples_stay_and_the_ledger_closes_better(shorter, tmp_path):
-    about, one = read_json(shorter, "run.json"), read_arrays(shorter, "history.npz")
-    longer, other = completed(tmp_path, *RUN)
+def test_samples_stay_and_the_ledger_closes_better(tmp_path):
+    about, one = completed(tmp_path / "shorter", *RUN, "impactStepFraction=0.06")
+    longer, other = completed(tmp_path / "longer", *RUN)
     assert np.allclose(one["time"], other["time"], rtol=1e-12, atol=0)
     assert about["derived"]["steps"] == longer["derived"]["steps"]
     assert about["derived"]["stepChoice"].startswith("as given: 0.06 t0 until ")

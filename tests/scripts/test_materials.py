@@ -139,21 +139,6 @@ def test_target_and_projectile_of_different_materials_move_about_their_centre_of
     assert depth == pytest.approx(own, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "arguments, words",
-    [
-        (f"{BOTH} packing=bcca", "materialFraction: not given with two materials"),
-        (f"{BOTH} packing=bcca materialFraction=0.3 young=1e9", "young = 1e+09: given with two materials"),
-        (f"{BOTH} materialFraction=0.3", "a lattice of two materials cannot be at rest"),
-        ("layout=halves", "layout = halves: given with one material"),
-        ("material=quartz", "material = quartz: no such material"),
-        ("material=quartz materials=none.toml", "materials = none.toml"),
-    ],
-)
-def test_what_does_not_go_together_is_one_line(tmp_path, arguments, words):
-    assert words in refusal(collide(tmp_path, *arguments.split()))
-
-
 def test_a_material_of_ones_own_is_that_of_its_constants_and_its_file_is_watched(tmp_path):
     (tmp_path / "own.toml").write_text(OWN)
     tiny = "packing=bcca grains=10 velocity=1 grainRadius=1e-7 duration=2e-8 threads=1 states=2".split()

@@ -4,7 +4,7 @@ import shlex
 import sys
 
 import pytest
-from running import PYTHON, SCRIPTS, call, collide, refusal
+from running import PYTHON, SCRIPTS, call
 
 from analysis.__main__ import main as analysis
 from yade_scripts import make_packing, study
@@ -45,7 +45,6 @@ def make(arguments):
 
 
 COMMANDS = {"analysis": analysis, "study": study.main, "make_packing": make}
-OF_YADE = {"velocity 3": "argument 'velocity': not understood", "packing=file file=text.txt": "text.txt: not a packing"}
 
 
 @pytest.fixture
@@ -69,12 +68,6 @@ def test_mistakes_get_one_line(folder, capsys, monkeypatch, typed):
     lines = capsys.readouterr().err.splitlines()
     of_argparse = bool(lines) and lines[0].startswith("usage: ")  # which shows the usage first
     assert status == 2 and MISTAKES[typed] in lines[-1] and (of_argparse or len(lines) == 1), lines
-
-
-@pytest.mark.parametrize("typed", OF_YADE)
-def test_mistakes_in_what_yade_runs(folder, typed):
-    message = refusal(collide(folder, *shlex.split(typed)))
-    assert message.startswith("collide.py: ") and OF_YADE[typed] in message
 
 
 def test_python_in_place_of_yade_and_a_python_without_the_libraries(folder):

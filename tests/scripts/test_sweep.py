@@ -57,8 +57,7 @@ def test_a_mistake_gets_the_line_of_the_script_and_nothing_is_run(tmp_path, monk
 def test_a_run_that_fails_is_named_and_undecided_ones_are_counted(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(RunsFailed, match=r"^collide-.*v3000.*: the run broke down at t = "):
-        own = dict(folder="own", jobs=1, unusual=1, duration=10e-9, stepFraction=0.4)
-        from_python(radius=5, velocity=[10, 3000], **own)
+        from_python("own", jobs=1, radius=5, velocity=[10, 3000], unusual=1, duration=10e-9, stepFraction=0.4)
     assert len(list(tmp_path.glob("own/*/ended"))) == 1
     assert "\n2 runs; 1 undecided" in capsys.readouterr().out
     monkeypatch.setenv("PATH", "")
