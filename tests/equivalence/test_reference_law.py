@@ -89,7 +89,6 @@ def grains(name):
     }[name]
 
 
-FACTORS = {"sliding_factor": 2.5, "rolling_factor": 8, "mixed_factor": 2.5}
 # Time steps, what else the scene has, and the channels that must be at work.
 CASES = {
     "collision": (300, {}, "sliding rolling twisting connection disconnection"),
@@ -99,7 +98,11 @@ CASES = {
     "cluster": (300, {}, "sliding rolling twisting disconnection"),
     "cut": (300, {"limit": "cut", "sliding_factor": 2}, "sliding rolling twisting connection"),
     "cut-viscous": (300, {"limit": "cut"}, "sliding rolling twisting drag"),
-    "factors": (300, FACTORS, "sliding rolling twisting connection"),
+    "factors": (
+        300,
+        dict(sliding_factor=2.5, rolling_factor=8, mixed_factor=2.5),
+        "sliding rolling twisting connection",
+    ),
     "springs damped": (300, {"spring_damping": 1e-11}, "sliding rolling twisting disconnection springDamping"),
     "springs damped, met": (300, {"spring_damping": 1e-11}, "sliding rolling twisting connection drag springDamping"),
     "springs damped, cut": (300, {"limit": "cut", "spring_damping": 1e-11}, "sliding rolling twisting springDamping"),

@@ -5,11 +5,10 @@ from scenes import *
 
 pytestmark = pytest.mark.in_yade
 MODES = ("sliding", "rolling", "twisting")
+SCENES = [(["sliding"], "held"), (["rolling"], "cut"), (["twisting"], "held"), (MODES, "cut")]
 
 
-@pytest.mark.parametrize(
-    "left_out, limit", [(["sliding"], "held"), (["rolling"], "cut"), (["twisting"], "held"), (MODES, "cut")]
-)
+@pytest.mark.parametrize("left_out, limit", SCENES)
 def test_engine_and_functors_agree_and_the_ledger_closes(left_out, limit):
     """27 grains fly together, in four ways: the ledger's error (root mean square) is of second order."""
     springs = dict.fromkeys(left_out, False)

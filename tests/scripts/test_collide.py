@@ -93,9 +93,8 @@ def test_starts_at_rest_within_each_aggregate(run):
 
 def test_grown_aggregates_start_at_rest_unless_they_are_meant_as_made(tmp_path):
     """As made, some grains lie nearer to others than two radii, and pull: that drowns a small impact."""
-    small = (
-        "packing=bpca grains=1000 projectileGrains=5 velocity=2 seed=2 threads=1 endWhenApart=0 duration=2e-7".split()
-    )
+    small = ("packing=bpca", "grains=1000", "projectileGrains=5", "velocity=2", "seed=2", "threads=1")
+    small += ("endWhenApart=0", "duration=2e-7")
     about, history = completed(tmp_path / "rests", *small)
     as_made, other = completed(tmp_path / "moves", *small, "atRest=0")
     before = history["time"] < 0.99 * about["derived"]["firstTouch"]

@@ -1,4 +1,4 @@
-"""Collisions of BPCA aggregates (oblique, with drag, their early end), and impactStepFraction."""
+"""Collisions that are oblique, with drag, ended early, of single grains or spinning; impactStepFraction."""
 
 import numpy as np
 import pytest
@@ -56,14 +56,10 @@ def test_samples_stay_and_the_ledger_closes_better(tmp_path):
     assert 0 < errors[0] < 0.3 * errors[1]
 
 
-# ---- single grains, spins, slanting plates, offsets at random ----
-
-SMOOTH = ("sliding=0", "rolling=0", "twisting=0")
-
-
 def test_a_sphere_on_a_slanting_way_leaves_a_plate_as_the_closed_form_says(tmp_path):
     """Its normal motion is that of the theory at v cos(angle); its motion along a smooth plate stays."""
-    completed(tmp_path, "packing=bpca", "grains=1", "target=wall", "impactAngle=60", "velocity=40", *SMOOTH)
+    given = "packing=bpca grains=1 target=wall impactAngle=60 velocity=40 sliding=0 rolling=0 twisting=0"
+    completed(tmp_path, *given.split())
     found = outcome_of_run(open_run(tmp_path / "run"))
     theory = collide_pair(20.0, pair_constants(ICE, 1e-7, ICE, np.inf))
     assert found.kind == "bouncing" and found.restitution == pytest.approx(theory.restitution, rel=2e-3)

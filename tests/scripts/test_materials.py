@@ -83,12 +83,10 @@ def test_a_mixed_collision_counts_mass_closes_its_ledger_and_resumes_to_the_same
         start.mass, start.aggregate, start.velocity, start.contact_pairs, end.velocity, end.contact_pairs
     )
     assert outcome_of_run(run).mass_fractions == found.mass_fractions
-    stopped = tmp_path / "stopped"
-    stopped.mkdir()
-    stop_midway(stopped, (*hit, "duration=4e-7", "checkpointInterval=0.05"))
+    stop_midway(tmp_path, (*hit, "duration=4e-7", "checkpointInterval=0.05"))
     straight = completed(tmp_path / "straight", *hit, "duration=4e-7")[1]
-    assert collide(stopped, "continue=run").returncode == 0
-    continued = read_arrays(stopped, "run", "history.npz")
+    assert collide(tmp_path, "continue=run").returncode == 0
+    continued = read_arrays(tmp_path, "run", "history.npz")
     assert all(np.array_equal(continued[name], straight[name]) for name in straight)
 
 

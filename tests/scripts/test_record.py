@@ -91,14 +91,12 @@ def test_any_script_leaves_a_run_that_the_analysis_reads(script, tmp_path, words
     saved = set(range(0, len(run.history["time"]), 5)) | {len(run.history["time"]) - 1}
     assert run.states.times.tolist() == run.history["time"][sorted(saved)].tolist()
     assert run.history["x"][-1] != run.history["x"][0] and np.all(run.last.aggregate == np.arange(60) % 2)
-    assert (run.last.cell_size is not None) == ("cell" in words) and (run.last.plane_axis is not None) == (
-        "wall" in words
-    )
+    assert (run.last.cell_size is None) == ("cell" not in words)
+    assert (run.last.plane_axis is None) == ("wall" not in words)
     if "two" in words:
         assert [material["name"] for material in run.derived["materials"]] == ["sand", "ice"]
-        assert np.all(run.last.material == (np.arange(60) % 3 > 0)) and np.isclose(
-            run.last.mass[0], 2.6 * run.last.mass[1]
-        )
+        assert np.all(run.last.material == (np.arange(60) % 3 > 0))
+        assert np.isclose(run.last.mass[0], 2.6 * run.last.mass[1])
     if "bonds" in words:
         assert run.start.contact_bonded.all() and "brokenByRolling" in run.history
     found = table(tmp_path / "run")
@@ -146,11 +144,8 @@ O.run(50, True)
 """
     file.write_text(open(script).read() + more)
     run = recorded(tmp_path, str(file), "fused two")
-    assert [(own["name"], own["surfaceEnergy"]) for own in run.derived["materials"]] == [
-        ("sand", 0.025),
-        ("ice", 0.1),
-        ("ice", 0.05),
-    ]
+    known = [(own["name"], own["surfaceEnergy"]) for own in run.derived["materials"]]
+    assert known == [("sand", 0.025), ("ice", 0.1), ("ice", 0.05)]
     assert np.all(run.last.material[:60] == np.where(run.start.material, 2, 0)) and run.derived["pullOffEnergies"][2]
     assert len(run.start.radius) == 60 and len(run.last.radius) == 61 and run.last.aggregate[-1] == 0
     assert len(run.history["time"]) == 11 + 10 + 5 + 5
