@@ -91,7 +91,9 @@ def curves(
         plain_ticks(place, log)
     for row in axes:
         row[0].set_ylabel(y_label)
-    legend(max(flat, key=lambda place: len(place.get_legend_handles_labels()[1])), fontsize=8)
+    fullest = max(flat, key=lambda place: len(place.get_legend_handles_labels()[1]))
+    if len(fullest.get_legend_handles_labels()[1]) > 1:
+        legend(fullest, fontsize=8)
     letter(used, "")
     return figure
 

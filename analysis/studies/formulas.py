@@ -160,6 +160,8 @@ def _dependences(runs, ice):
     for what, ((name, value, by), paper) in of.items():
         other = where(runs, **{**ICE, name: value, "finalFilling": 0.2})
         yield Row(f"n of tensile strength ∝ {what}", change("tensile_strength", other, middle, by), *paper)
+        more = change("pressed", other, middle, by)
+        yield Row(f"n of compressive strength over its formula ∝ {what}", more, 0.0, "0", "T23")
     for name, (what, _) in QUANTITIES.items():
         word = what.split(" over")[0]
         slow = where(runs, **{**ICE, "strainRate": 5e-7, "finalFilling": 0.2})
