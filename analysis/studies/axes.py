@@ -1,6 +1,7 @@
 """What the atlas leaves out: collisions of aggregates as they are, and of the same pairs with one thing changed."""
 
 import re
+from functools import partial
 
 import numpy as np
 
@@ -25,6 +26,7 @@ AXES = {  # axis: its title
     "rolling": "critical rolling displacement",
     "springs": "a spring left out",
 }
+SMALL = 100  # grains of each aggregate of those whose names say no size
 SPEEDS = (2.0, 3.2, 5.0, 6.5, 8.5, 12.0, 25.0)  # v_break: limits of bands
 FAST = 5.0  # v_break: below, aggregates stick
 HARDLY = (0.75, 1.33)  # of a critical velocity: as in the atlas
@@ -45,6 +47,7 @@ MEASURED = (
         Column("axis", "", "what is changed; base: nothing", "O"),
         Column("level", "", "to what", "O"),
     ),
+    parameter("grains", "", "of each aggregate", "i"),
     parameter("packing", "", "structure of both aggregates", "O"),
     VELOCITY,
     parameter("impact", "", "impact parameter over the sum of the characteristic radii"),
@@ -56,42 +59,53 @@ MEASURED = (
 
 def prepared(runs):
     """The table with `speed` [v_break], that of the pair unchanged; `stuck` and `grown`, NaN where they did not meet or
-    are undecided; `more` and `gain`: these less those of the pair unchanged."""
+    are undecided; `more` and `gain`: these less those of the pair unchanged; `at_end`: growth of undecided runs too, as
+    they stand at their end."""
     known = ~runs.outcome.isin((NEVER_MET, UNDECIDED))
     runs = runs.assign(stuck=(runs.outcome == STICKING).astype(float).where(known), grown=runs.growth.where(known))
+    runs = runs.assign(at_end=runs.growth.where(runs.outcome != NEVER_MET))
     base = runs[runs.axis == BASE].set_index("number")
     of_base = lambda name: runs.number.map(base[name])
     speed = of_base("velocity") / breaking_velocity(ICE, 1e-7)
     return runs.assign(speed=speed, more=runs.stuck - of_base("stuck"), gain=runs.grown - of_base("grown"))
 
 
-def _fast(runs):
-    return (runs.speed > FAST) & runs.grown.notna()
-
-
-def critical_speed(runs):
-    """Speed [v_break] above which targets lose more than they gain, by the runs from FAST on; NaN far from them."""
-    runs = runs[_fast(runs)]
-    found = zero_of_fit(runs.speed, runs.grown)
+def critical_speed(column, runs):
+    """Speed [v_break] above which targets lose more than they gain, by `grown` or `at_end` of runs; NaN far from
+    them."""
+    found = zero_of_fit(runs.speed, runs[column])
     return found if FAST / 2 < found < 2 * SPEEDS[-1] else np.nan
+
+
+def _fast(column, runs):
+    """What critical_speed() takes of the runs from FAST on: the others stick."""
+    return runs.loc[(runs.speed > FAST) & runs[column].notna(), ["pair", "speed", column]]
 
 
 def rows(runs):
     """Critical velocities over that of the same pairs unchanged, and how the fraction that sticks changes."""
-    base = runs[(runs.axis == BASE) & runs.speed.notna()]
-    for packing, own in base.groupby("packing"):
-        yield Row(f"critical velocity of {packing}, nothing changed [v_break]", estimate(critical_speed, own))
-    changed = runs[runs.axis != BASE]
-    for (axis, level), own in sorted(changed.groupby(["axis", "level"], sort=False), key=_place):
-        what = f"{AXES[axis]}, {level}"
-        found = beside(critical_speed, own, base, np.divide, _fast)
-        paper = (HARDLY, "hardly another", "A22") if axis == "drag" else ()
-        paper = (HARDLY, "hardly another", "A22b") if axis == "rolling" else paper
-        yield Row(f"critical velocity over that unchanged: {what}", found, *paper)
-        slow, fast = own[own.speed < FAST], own[own.speed >= FAST]
-        for words, part in (("below", slow), ("above", fast)):
-            yield Row(f"change of the fraction that sticks, {words} {FAST:g} v_break: {what}", average(part.more))
-        yield Row(f"change of the growth efficiency, above {FAST:g} v_break: {what}", average(fast.gain))
+    for grains, own in runs.groupby("grains"):
+        base = own[(own.axis == BASE) & own.speed.notna()]
+        for packing, alike in base.groupby("packing"):
+            found = estimate(partial(critical_speed, "grown"), _fast("grown", alike))
+            yield Row(f"critical velocity of {packing}, nothing changed, {grains:,} grains [v_break]", found)
+        changed = own[own.axis != BASE]
+        for (axis, level), own in sorted(changed.groupby(["axis", "level"], sort=False), key=_place):
+            yield from _changed(own, base, axis, f"{AXES[axis]}, {level}", grains)
+
+
+def _changed(runs, base, axis, what, grains):
+    """The same of one level of an axis."""
+    paper = {"drag": (HARDLY, "hardly another", "A22"), "rolling": (HARDLY, "hardly another", "A22b")}.get(axis, ())
+    size = "" if grains == SMALL else f", {grains:,} grains"
+    for column, words in (("grown", ""), ("at_end", ", undecided as they stand")):
+        found = beside(partial(critical_speed, column), _fast(column, runs), _fast(column, base), np.divide)
+        yield Row(f"critical velocity over that unchanged{words}: {what}{size}", found, *(() if words else paper))
+    slow, fast = runs[runs.speed < FAST], runs[runs.speed >= FAST]
+    for words, part in (("below", slow), ("above", fast)):
+        if len(part):
+            yield Row(f"change of the fraction that sticks, {words} {FAST:g} v_break: {what}{size}", average(part.more))
+    yield Row(f"change of the growth efficiency, above {FAST:g} v_break: {what}{size}", average(fast.gain))
 
 
 def _place(group):
@@ -101,7 +115,7 @@ def _place(group):
 
 def figures(runs):
     """Changes of the fraction that sticks, and of the growth efficiency."""
-    changed = runs[(runs.axis != BASE) & runs.more.notna()]
+    changed = runs[(runs.axis != BASE) & runs.more.notna() & (runs.grains == SMALL)]
     if len(changed):
         less = ", less that of the same pairs unchanged, with standard errors."
         yield "sticking", f"Fraction that sticks{less}", _changes(changed, "more", "change of $p_{stick}$")
@@ -138,7 +152,7 @@ STUDY = Study(
     title="What the atlas leaves out",
     question="Do drag, surface energy, spin, unlike radii, a second material, sintered necks, rolling or a missing "
     "spring change what becomes of a collision?",
-    values={"grains": 100},
+    values={},
     key=("number", "axis", "level"),
     measured=MEASURED,
     pair=("number",),

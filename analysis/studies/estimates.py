@@ -87,13 +87,12 @@ def average(values):
     return Estimate(values.mean(), values.std() / len(values) ** 0.5 if len(values) > 1 else None, len(values))
 
 
-def beside(statistic, one, other, of=np.subtract, counted=None):
+def beside(statistic, one, other, of=np.subtract):
     """Estimate of of(statistic(one), statistic(other)), a difference or a ratio: of the pairs that are in both tables
-    of runs, or of all where none is. counted: which rows (mask) of runs the statistic uses, where they are few."""
+    of runs, or of all where none is."""
     shared = set(one["pair"]) & set(other["pair"])
     one, other = (own[own["pair"].isin(shared)] if shared else own for own in (one, other))
     both = pandas.concat([one.assign(first=True), other.assign(first=False)], ignore_index=True)
-    both = both if counted is None else both[counted(both)]
     return estimate(lambda runs: of(statistic(runs[runs["first"]]), statistic(runs[~runs["first"]])), both)
 
 
@@ -130,10 +129,11 @@ def threshold(x, y):
 def zero_of_fit(x, y):
     """x at which y (K,), fitted linear in ln x, is 0; NaN with fewer than three values of x (K,). Of growth efficiency
     against velocity: above it targets lose more than they gain."""
+    x, y = np.log(np.asarray(x, dtype=float)), np.asarray(y, dtype=float)
     if len(np.unique(x)) < 3:
         return math.nan
-    slope, level = np.polyfit(np.log(x), y, 1)
-    return float(np.exp(-level / slope))
+    away = x - x.mean()
+    return float(np.exp(x.mean() - y.mean() * (away @ away) / (away @ y)))
 
 
 def exponent(x, y):
