@@ -82,7 +82,7 @@ def run(script, folder, timeout, arguments, output):
     for number, name in ((1, "stdout"), (2, "stderr")):
         os.dup2(os.open(os.path.join(output, name), os.O_CREAT | os.O_WRONLY), number)
     main = vars(sys.modules["__main__"])
-    try:
+    try:  # by sys.exit(), as YADE's program does: record() hears of the end there
         try:
             with open(script) as file:
                 exec(compile(file.read(), script, "exec"), main)

@@ -158,7 +158,7 @@ def _parabola_vertex(t, d):
     return d[1] + 0.5 * slope * shift, t[1] + shift
 
 
-def falls_through_zero(time, v):
-    """Times [s] at which v, linear between samples, falls from positive to zero or below."""
-    i = np.flatnonzero((v[:-1] > 0) & (v[1:] <= 0))
-    return time[i] + (time[i + 1] - time[i]) * v[i] / (v[i] - v[i + 1])
+def falls_through_zero(x, y):
+    """x (M,) at which y (K,), linear between rising x (K,), falls from positive to zero or below."""
+    i = np.flatnonzero((y[:-1] > 0) & (y[1:] <= 0))
+    return x[i] + (x[i + 1] - x[i]) * y[i] / (y[i] - y[i + 1])

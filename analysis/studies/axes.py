@@ -84,12 +84,11 @@ def _fast(column, runs):
 
 def rows(runs):
     """Critical velocities over that of the same pairs unchanged, and how the fraction that sticks changes."""
-    for grains, own in runs.groupby("grains"):
-        base = own[(own.axis == BASE) & own.speed.notna()]
-        for packing, alike in base.groupby("packing"):
-            found = estimate(partial(critical_speed, "grown"), _fast("grown", alike))
+    for grains, alike in runs.groupby("grains"):
+        base, changed = alike[(alike.axis == BASE) & alike.speed.notna()], alike[alike.axis != BASE]
+        for packing, own in base.groupby("packing"):
+            found = estimate(partial(critical_speed, "grown"), _fast("grown", own))
             yield Row(f"critical velocity of {packing}, nothing changed, {grains:,} grains [v_break]", found)
-        changed = own[own.axis != BASE]
         for (axis, level), own in sorted(changed.groupby(["axis", "level"], sort=False), key=_place):
             yield from _changed(own, base, axis, f"{AXES[axis]}, {level}", grains)
 

@@ -91,8 +91,9 @@ def curves(
         plain_ticks(place, log)
     for row in axes:
         row[0].set_ylabel(y_label)
-    fullest = max(flat, key=lambda place: len(place.get_legend_handles_labels()[1]))
-    if len(fullest.get_legend_handles_labels()[1]) > 1:
+    named = lambda place: len(place.get_legend_handles_labels()[1])
+    fullest = max(flat, key=named)
+    if named(fullest) > 1:
         legend(fullest, fontsize=8)
     letter(used, "")
     return figure

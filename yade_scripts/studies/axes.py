@@ -3,8 +3,8 @@ necks, rolling, and springs that are missing.
 
 desk: 1,000 pairs of BPCA and BCCA aggregates of 100 ice grains collide as they are, and once more with one thing
 changed on each axis, one level of it for each pair. large: 60 pairs of BPCA aggregates of 2,000 grains about the
-threshold of fragmentation, and once more with each change of LARGE. Velocities are drawn over v_break, the mean E_break
-of two grains over the mean mass of one, so that what scales with it is no change. Rows stand pair by pair."""
+threshold of fragmentation, and once more with each of CHANGES_OF_LARGE. Velocities are drawn over v_break, the mean
+E_break of two grains over the mean mass of one, so that what scales with it is no change. Rows stand pair by pair."""
 
 from functools import lru_cache
 from math import floor, pi
@@ -19,7 +19,7 @@ from yade_scripts.packings.aggregate import EQUAL, radii
 SEED = 50_000
 DESK, DESK_GRAINS, DESK_SPEEDS = range(1000), 100, (2.0, 25.0)  # numbers of pairs, grains of each aggregate, v_break
 LARGE, LARGE_GRAINS, LARGE_SPEEDS = range(1000, 1060), 2000, (8.0, 25.0)
-WAY = 48e-6  # m at the collision velocity: duration of large ones, 3.5 times the default; some 2 % stay undecided
+WAY = 48e-6  # m at the collision velocity: duration of large ones, 3.5 times the default; 4 % stay undecided
 LONGEST = 0.2  # step [t0], as of the atlas; a tenth below the limit of stability where that is less
 SAMPLE = 10_000  # radii of which mean energy and mass are taken
 AXES = {  # {axis: {level: what is changed}}
@@ -47,28 +47,27 @@ criticalRolling, grainRadius: m; stepFraction: t0."""
 
 def tables():
     """{size: (rows, head)}."""
-    sizes = {"desk": (DESK, of_desk, DESK_GRAINS), "large": (LARGE, of_large, LARGE_GRAINS)}
-    return {
-        size: ([row for number in numbers for row in of(number)], HEAD.format(f"{grains:,}"))
-        for size, (numbers, of, grains) in sizes.items()
-    }
+    desk = [row for number in DESK for row in of_desk(number)]
+    large = [row for number in LARGE for row in of_large(number)]
+    return {"desk": (desk, HEAD.format(f"{DESK_GRAINS:,}")), "large": (large, HEAD.format(f"{LARGE_GRAINS:,}"))}
 
 
 def of_desk(number):
-    """The rows of a pair: unchanged, then one a changed axis."""
+    """The rows of a pair: unchanged, then one a changed axis, at one of its levels."""
     changed = [f"{axis}-{list(levels)[number % len(levels)]}" for axis, levels in AXES.items()]
     structure = ("bpca", "bcca")[number // 2 % 2]
-    return rows_of(number, {"packing": structure, "grains": DESK_GRAINS}, DESK_SPEEDS, changed)
+    return rows_of(number, {"packing": structure, "grains": DESK_GRAINS}, DESK_SPEEDS, changed, "runs/axes")
 
 
 def of_large(number):
-    for row in rows_of(number, {"packing": "bpca", "grains": LARGE_GRAINS}, LARGE_SPEEDS, CHANGES_OF_LARGE):
-        row |= {"duration": f"{WAY / float(row['velocity']):.4g}", "endWhenApart": 1}
-        yield {**row, "out": f"runs/axes-large/{row['description']}"}
+    """The same: unchanged, then each of CHANGES_OF_LARGE."""
+    packing = {"packing": "bpca", "grains": LARGE_GRAINS}
+    for row in rows_of(number, packing, LARGE_SPEEDS, CHANGES_OF_LARGE, "runs/axes-large"):
+        yield {**row, "duration": f"{WAY / float(row['velocity']):.4g}", "endWhenApart": 1}
 
 
-def rows_of(number, packing, speeds, changed):
-    """The rows of a pair: unchanged, then with each of these CHANGES."""
+def rows_of(number, packing, speeds, changed, folder):
+    """The rows of a pair: unchanged, then with each of these CHANGES; folder: of the run folders."""
     draw = np.random.default_rng([SEED, number])
     speed = speeds[0] * (speeds[1] / speeds[0]) ** draw.random()
     pair = {**packing, "grainRadius": "1e-7", "seed": SEED + number, "impact": f"{draw.random() ** 0.5:.6g}"}
@@ -76,7 +75,7 @@ def rows_of(number, packing, speeds, changed):
         given = {**pair, **CHANGES.get(name, {})}
         scale, step = scale_and_step(tuple({**given, "seed": 1, "impact": 0}.items()))
         row = {"description": f"{number:04d}-{name}", **given, "velocity": f"{speed * scale:.6g}"}
-        yield {**row, "stepFraction": step, "threads": 1, "states": 9, "out": f"runs/axes/{number:04d}-{name}"}
+        yield {**row, "stepFraction": step, "threads": 1, "states": 9, "out": f"{folder}/{number:04d}-{name}"}
 
 
 @lru_cache
