@@ -110,7 +110,7 @@ def test_slow_aggregates_meet_within_the_default_duration(tmp_path):
     move through each other in it, or come to rest before."""
     about, history = completed(tmp_path, "packing=bcca", "grains=64", "velocity=3")
     parameters, derived = about["parameters"], about["derived"]
-    after = 4 * parameters["radius"] * 1e-7 / 3
+    after = 12 * parameters["radius"] * 1e-7 / 3
     assert parameters["duration"] == pytest.approx(derived["firstTouch"] + after, rel=1e-12)
     met = history["time"][np.argmax(history["contacts_between"] > 0)]
     assert 0 <= met - derived["firstTouch"] < 1.5 * np.diff(history["time"])[0]

@@ -19,7 +19,6 @@ from yade_scripts.packings.aggregate import EQUAL, radii
 SEED = 50_000
 DESK, DESK_GRAINS, DESK_SPEEDS = range(1000), 100, (2.0, 25.0)  # numbers of pairs, grains of each aggregate, v_break
 LARGE, LARGE_GRAINS, LARGE_SPEEDS = range(1000, 1060), 2000, (8.0, 25.0)
-WAY = 48e-6  # m at the collision velocity: duration of large ones, 3.5 times the default; 4 % stay undecided
 LONGEST = 0.2  # step [t0], as of the atlas; a tenth below the limit of stability where that is less
 SAMPLE = 10_000  # radii of which mean energy and mass are taken
 AXES = {  # {axis: {level: what is changed}}
@@ -62,8 +61,7 @@ def of_desk(number):
 def of_large(number):
     """The same: unchanged, then each of CHANGES_OF_LARGE."""
     packing = {"packing": "bpca", "grains": LARGE_GRAINS}
-    for row in rows_of(number, packing, LARGE_SPEEDS, CHANGES_OF_LARGE, "runs/axes-large"):
-        yield {**row, "duration": f"{WAY / float(row['velocity']):.4g}", "endWhenApart": 1}
+    return rows_of(number, packing, LARGE_SPEEDS, CHANGES_OF_LARGE, "runs/axes-large")
 
 
 def rows_of(number, packing, speeds, changed, folder):
