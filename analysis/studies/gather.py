@@ -107,18 +107,20 @@ def _measure(study, paths, found):
 
 def _once(study, runs, rows, found):
     """Of _measure() those that are not in a table, the longest of each key; rows of a table get their folder."""
-    measured, same = {}, f"the same {', '.join(study.key)} as"
+    measured, known, same = {}, [], f"the same {', '.join(study.key)} as"
     for run, values in runs:
         key = _key(study, values)
         if key in rows:
             rows[key][FOLDER] = rows[key][FOLDER] or str(run.path)
-            found.notes.append(f"{run.path}: {same} {rows[key][RUN]} of a table, counted once")
+            known.append(f"{run.path}: {same} {rows[key][RUN]} of a table, counted once")
         elif key in measured:
             by_length = sorted([(run, values), measured[key]], key=lambda own: own[0].history["time"][-1])
             short, measured[key] = by_length
             found.notes.append(f"{short[0].path}: {same} {measured[key][0].path}, which is as long or longer, left out")
         else:
             measured[key] = run, values
+    if known:
+        found.notes.append(known[0] + (f", as are {len(known) - 1} more" if known[1:] else ""))
     return list(measured.values())
 
 
