@@ -1,7 +1,7 @@
 """Tables of the study of compaction: equal BCCA clusters of ice that collide head-on, as in Wada et al. (2008).
 
 desk: eight pairs of 512 + 512 grains, four of 2,048 + 2,048, at kinetic energies up to N E_roll. What has stuck goes on
-to shrink: runs last three times as long as usual."""
+to shrink: runs last LASTING, though their outcome is decided."""
 
 from itertools import product
 
