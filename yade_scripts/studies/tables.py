@@ -9,14 +9,15 @@ A module STUDY.py has tables(): {size: (rows, head)}; each becomes STUDY-SIZE.ta
 import os
 import sys
 from importlib import import_module
+from pathlib import Path
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
 from analysis.printable import meant
-from analysis.studies.study import NAMES as STUDIES
 from yade_scripts.parameters import InputError
 from yade_scripts.run.table import write as write_table
 
+STUDIES = sorted({path.stem for path in Path(HERE).glob("*.py")} - {"tables"})
 EXAMPLES = ("demo", "seeds")  # which no module makes
 
 
