@@ -46,7 +46,7 @@ def test_yades_own_loop_resumes_to_rounding(tmp_path):
 def test_a_run_that_ends_undecided_goes_on_to_the_same_bits(tmp_path):
     """Its line has the command. A row of a table is its run if that is as long as it wants, and goes on with it
     otherwise."""
-    fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1".split()
+    fluffy = "packing=bcca grains=64 velocity=2 states=2 threads=1 stepFraction=0.025".split()
     _, straight = completed(tmp_path / "straight", *fluffy, "duration=6e-7")
     done = collide(tmp_path, *fluffy, "duration=3e-7", "out=run")
     reason, _, command = done.stdout.partition("\nto continue: ")

@@ -9,6 +9,7 @@ import numpy as np
 from analysis.runs.format import RunKind
 from yade_scripts.materials import OF_BOND, derived_grains
 
+INTERVAL = 200  # a sample of 200 to 1,000 grains takes as long as 30 to 60 steps
 FEWEST_SAMPLES = 300
 MOST_SAMPLES = 200_000  # that a history holds in memory: 30 MB
 
@@ -51,7 +52,7 @@ class Scene:
     energy_is_conserved: bool = True  # whether all channels together are constant
     control: Callable[[Any, Mapping], bool] = lambda recorder, state: False
     ended_by: Callable[[Any], str | None] = lambda recorder: None  # what brought a run to its end, in a few words
-    interval: int = 50  # small steps between samples, at most
+    interval: int = INTERVAL  # small steps between samples, at most
     step_choice: str = "as given"  # how stepFraction came about, in one line
 
     @property
@@ -96,7 +97,7 @@ class Schedule:
         return self.steps // self.interval
 
     @classmethod
-    def of(cls, duration, time_step, interval=50, states=22, kept=None):
+    def of(cls, duration, time_step, interval=INTERVAL, states=22, kept=None):
         """At most `interval` steps between samples, at least FEWEST_SAMPLES and at most MOST_SAMPLES intervals if the
         steps suffice. kept: the interval of a run that is continued."""
         steps = max(1, ceil(duration / time_step * (1 - 1e-12)))

@@ -22,6 +22,7 @@ KINDS = {"collide.py": collision.KIND, "compress.py": compression.KIND}  # of th
 THREADS = ("!THREADS", "!OMP_NUM_THREADS")
 OF_YADE_BATCH = ("!SCRIPT", *THREADS)  # its columns that have a meaning here, too
 SPEED = 80e6  # contact updates a second of the fused engine on one core, of docs/measurements.md
+BESIDE = 150  # contacts that take as long as what else a step costs, and its part of a sample: 10 to 1,000 grains
 SLOWER = 30  # the same engine's speed over that of YADE's own loop
 STOPPED = (128 + signal.SIGINT, 128 + signal.SIGTERM)  # exit statuses of a run that was stopped
 
@@ -60,12 +61,12 @@ class StudyRow:
 
     @cached_property
     def expected_seconds(self):
-        """Seconds that its run should take: steps times contacts at SPEED; None for a kind of a user's own."""
+        """Seconds that its run should take: steps times contacts, and BESIDE, at SPEED; None for a kind of a user's own."""
         if self.kind is None:
             return None
         estimate = self.kind.estimate(self.parameters)
         slower = SLOWER if self.parameters.engine == "functors" else 1
-        return slower * estimate.steps * estimate.contacts / SPEED / self.threads
+        return slower * estimate.steps * (estimate.contacts + BESIDE) / SPEED / self.threads
 
 
 def read(path, longer=None):
