@@ -61,7 +61,7 @@ class StudyRow:
 
     @cached_property
     def expected_seconds(self):
-        """Seconds that its run should take: steps times contacts, and BESIDE, at SPEED; None for a kind of a user's own."""
+        """Seconds of its run: steps times contacts, and BESIDE, at SPEED; None for a kind of a user's own."""
         if self.kind is None:
             return None
         estimate = self.kind.estimate(self.parameters)
