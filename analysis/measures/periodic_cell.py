@@ -11,6 +11,7 @@ averages. The virial's own series is of the moment of each sample, which misses 
 import numpy as np
 
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
+SMOOTHED = 0.1  # noise lifts the largest tension of short windows, by a tenth over AVERAGED
 
 
 def nearest_image(separation, cell_size):
@@ -109,10 +110,12 @@ def tension(history, width):
 
 
 def tensile_strength(history, width):
-    """(largest tension() [Pa], the filling factor there); NaN of a cell that was not stretched."""
-    fillings, stress = tension(history, width)
+    """(largest tension() [Pa], the filling factor there), over SMOOTHED of the time that it takes to get there, and
+    `width` [s] at least; NaN of a cell that was not stretched."""
+    _, stress = tension(history, width)
     if not len(stress):
         return float("nan"), float("nan")
+    fillings, stress = tension(history, width * max(1.0, SMOOTHED * np.argmax(stress)))
     k = np.argmax(stress)
     return float(stress[k]), float(fillings[k])
 

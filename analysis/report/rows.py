@@ -10,7 +10,7 @@ import numpy as np
 
 from ..measures.fragments import fragment_labels, grain_masses, heaviest_fragment
 from ..measures.outcome import NEVER_MET
-from ..measures.periodic_cell import AVERAGED, pressure_at_end, tensile_strength
+from ..measures.periodic_cell import AVERAGED, SMOOTHED, pressure_at_end, tensile_strength
 from ..measures.structure import mean_coordination
 from ..progress import progress
 from ..runs.collect import run_folders
@@ -49,7 +49,7 @@ OF_COLLISION = (
 )
 NOTICED = 0.01  # K(0) that is released, beyond which a summary says so
 OF_STRETCHING = (
-    Column("tensile_strength", "Pa", f"largest tension while stretched, over {AVERAGED:g} t0"),
+    Column("tensile_strength", "Pa", f"largest tension while stretched, over {SMOOTHED:g} of the way to it"),
     Column("tensile_filling", "1", "filling factor there"),
 )
 ENERGIES = (

@@ -74,7 +74,7 @@ MEASURED = (
     ),
     group(
         _stretched,
-        Column("tensile_strength", "Pa", "largest tension"),
+        Column("tensile_strength", "Pa", f"largest tension, over {cells.SMOOTHED:g} of the way to it"),
         Column("tensile_filling", "", "filling factor at which the tension is largest"),
     ),
     one("closure", "", "largest error of the ledger over the largest work", lambda run: work_closure(run.history)),
