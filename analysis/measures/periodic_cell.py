@@ -11,7 +11,7 @@ averages. The virial's own series is of the moment of each sample, which misses 
 import numpy as np
 
 AVERAGED = 1000.0  # t0 over which K13 averages the pressure (section 2.4)
-SMOOTHED = 0.1  # noise lifts the largest tension of short windows, by a tenth over AVERAGED
+SMOOTHED = 0.1  # noise lifts the largest tension over AVERAGED, by 6 % at a filling factor of 0.3, by half at 0.1
 
 
 def nearest_image(separation, cell_size):

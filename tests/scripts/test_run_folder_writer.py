@@ -89,7 +89,8 @@ def test_what_others_put_into_a_run_folder_stays_and_links_out_of_it_are_not_fol
 
 
 def test_a_schedule_has_both_ends_and_fits_into_memory():
-    for duration, steps, interval in ((250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 70000, 200)):
+    cases = (250e-9, 12950, 43), (1e-12, 1, 1), (10e-12, 10, 1), (1e-6, 51800, 172), (1e-6, 70000, 200)
+    for duration, steps, interval in cases:
         schedule = Schedule.of(duration, duration / steps)
         assert steps <= schedule.steps < steps + interval and schedule.interval == interval
         samples = schedule.steps // interval

@@ -43,7 +43,7 @@ def test_expected_times_follow_the_rows_that_have_ended():
     """Steps times contacts over the speed; threads at once share the work."""
     small, large = row(radius=40), row(radius=80)
     seconds, estimate = small.expected_seconds, KIND.estimate(small.parameters)
-    assert seconds == pytest.approx(estimate.steps * (estimate.contacts + rows.BESIDE) / rows.SPEED)
+    assert seconds == pytest.approx(estimate.steps * (estimate.contacts + 150) / 80e6)
     assert 14 < large.expected_seconds / seconds < 17
     waiting, done = State(WAITING), State(DONE, 1.0, 2 * seconds)
     assert study_of(small, small).time_left([waiting] * 2) == pytest.approx(seconds)

@@ -9,7 +9,6 @@ A module STUDY.py has tables(): {size: (rows, head)}; each becomes STUDY-SIZE.ta
 import os
 import sys
 from importlib import import_module
-from pathlib import Path
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(os.path.dirname(HERE)))
@@ -17,13 +16,14 @@ from analysis.printable import meant
 from yade_scripts.parameters import InputError
 from yade_scripts.run.table import write as write_table
 
-STUDIES = sorted({path.stem for path in Path(HERE).glob("*.py")} - {"tables"})
 EXAMPLES = ("demo", "seeds")  # which no module makes
 
 
 def of_studies():
     """{name: (rows, head, study)} of all tables; rows as yade_scripts.run.table.write() takes them."""
-    tables_of = {study: import_module(f"yade_scripts.studies.{study}").tables() for study in STUDIES}
+    from analysis.studies.study import NAMES  # loads pandas, which no table that is there needs
+
+    tables_of = {study: import_module(f"yade_scripts.studies.{study}").tables() for study in NAMES}
     return {f"{study}-{size}": (*made, study) for study, tables in tables_of.items() for size, made in tables.items()}
 
 
