@@ -31,7 +31,7 @@ ENERGY_FILLINGS = (0.01, 0.03, 0.1, 0.3, 0.4, 0.5, 0.6)
 PRESSURES = {filling: f"P_{filling:.4f}" for filling in FILLINGS}
 ENERGIES = {(name, filling): f"{name}_{filling:g}" for filling in ENERGY_FILLINGS for name in LOST_CHANNELS}
 DIMENSIONS = {filling: f"D_{filling:g}" for filling in (0.003, 0.01, 0.03, 0.1)}  # K13 Fig. 11
-ENDS = "initial_filling", "largest_filling", "last_filling", "stretched_axes"
+ENDS = "initial_filling", "largest_filling"
 VALID_TO = 0.1  # the filling factor up to which K13 eq 25 holds
 ROUNDING = 1.0 + 1e-9
 # What the clusters of a set have in common, with K13's ice (section 3.1); seeds and the ends of the compressions
@@ -66,8 +66,7 @@ def _binned(history, places, values):
 def _reached(run, row):
     filling = run.history["filling"]
     at_300 = cells.filling_at_pressure(run.history, 300.0, cells.AVERAGED * row["time_unit"])  # K13 section 3.7
-    ends = (float(value) for value in (filling[0], filling.max(), filling[-1]))
-    return *ends, _spanned_from(run), at_300, work_closure(run.history) or 0.0
+    return float(filling[0]), float(filling.max()), _spanned_from(run), at_300, work_closure(run.history) or 0.0
 
 
 def _spanned_from(run):
@@ -86,13 +85,6 @@ def _spanned_from(run):
 
 def _filling_of(run, state):
     return float(np.interp(state.time, run.history["time"], run.history["filling"]))
-
-
-def _stretching(run, row):
-    """Largest tension [Pa] and where it is, NaN for a cell that is not stretched; number of axes."""
-    history, largest = run.history, int(np.argmax(run.history["filling"]))
-    grown = [history[f"edge_{axis}"][-1] > history[f"edge_{axis}"][largest] * (1.0 + 1e-6) for axis in "xyz"]
-    return *cells.tensile_strength(history, cells.AVERAGED * row["time_unit"]), int(sum(grown))
 
 
 def _pressures(run, row):
@@ -136,16 +128,9 @@ MEASURED = (
         _reached,
         Column("initial_filling", "", "filling factor of the first cell"),
         Column("largest_filling", "", "largest filling factor that was reached"),
-        Column("last_filling", "", "filling factor at the end, after the stretching"),
         Column("spanned_from", "", "filling factor from which on contacts span the cell along all axes", gaps=True),
         Column("filling_at_300", "", "filling factor at 300 Pa", gaps=True),
         Column("closure", "", "largest error of the energy ledger over the largest work of the boundaries"),
-    ),
-    group(
-        _stretching,
-        Column("tensile_strength", "Pa", "largest tension while the cell is stretched", gaps=True),
-        Column("tensile_filling", "", "filling factor at which the tension is largest", gaps=True),
-        Column("stretched_axes", "", "number of axes along which the cell is stretched", kind="i"),
     ),
     group(_pressures, *_at_places(PRESSURES, "Pa", "pressure at the filling {:.4f}, by the work")),
     group(
