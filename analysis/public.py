@@ -8,8 +8,8 @@ from .measures.fragments import cumulative_cross_section, cumulative_grains, fra
 from .measures.fragments import fragment_sizes, growth_efficiency
 from .runs.ledger import closure, fractions_at, total_energy
 from .measures.conduction import conductivity
-from .measures.structure import correlation_dimension, filling_factor, grains_within, gyration_radius
-from .measures.structure import inner_coordination, mean_coordination
+from .measures.structure import correlation_dimension, filling_factor, geodesic_radius, grains_within
+from .measures.structure import gyration_radius, inner_coordination, mean_coordination
 from .report.rows import summarise, table
 from .runs.files import RunFolderError
 from .runs.folder import RunFolder, State, open_run

@@ -1,5 +1,7 @@
 """Planar packings, and aggregates by ballistic cluster-cluster aggregation (S17 section 4)."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from of_ice import OVERLAP, RADIUS, SPACING
@@ -7,6 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.stats import kstest
 
 from analysis.measures.fragments import fragment_labels
+from analysis.measures.structure import geodesic_radius
 from yade_scripts import packings
 from yade_scripts.packings import bcca
 
@@ -59,16 +62,28 @@ def test_clusters_meet_anywhere_on_their_cross_section(planar):
     assert kstest(impact if planar else impact**2, "uniform").pvalue > 1e-3
 
 
+@cache
+def aggregates(planar):
+    """Twelve of 64 and twelve of 1024 grains."""
+    return [[bcca(grains, RADIUS, OVERLAP, seed, planar=planar) for seed in range(12)] for grains in (64, 1024)]
+
+
+def exponent(measure, planar=False):
+    """(n, standard error) of measure(packing) ~ N^n, by means of its logarithm."""
+    small, large = np.log([[measure(packing) for packing in of_size] for of_size in aggregates(planar)])
+    error = np.hypot(np.std(small, ddof=1), np.std(large, ddof=1)) / np.sqrt(12)
+    return (large.mean() - small.mean()) / np.log(16), error / np.log(16)
+
+
 @pytest.mark.parametrize("planar, dimension", [(True, 1.5), (False, 1.9)])
 def test_bcca_has_the_fractal_dimension_of_cluster_cluster_aggregates(planar, dimension):
-    """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991). Mean of the
-    logarithm over 12 aggregates at 64 and 1024 grains; within 4 standard errors and 0.15 (small clusters)."""
-
-    def sizes(grains):
-        made = [bcca(grains, 1.0, 0.0, seed, planar=planar) for seed in range(12)]
-        return [np.log(packings.gyration_radius(packing)) for packing in made]
-
-    small, large = sizes(64), sizes(1024)
-    slope = (np.mean(large) - np.mean(small)) / np.log(16)
-    error = np.hypot(np.std(small), np.std(large)) / np.sqrt(12) / np.log(16)
+    """Gyration radius ~ N^(1/D): D = 1.48 to 1.55 in a plane and 1.8 to 1.95 in space (Meakin 1991); within 4 standard
+    errors and 0.15 (small clusters)."""
+    slope, error = exponent(packings.gyration_radius, planar)
     assert abs(slope - 1 / dimension) < 4 * error + 0.15 / dimension**2, (1 / slope, error)
+
+
+def test_ways_along_contacts_of_bcca_are_as_long_as_published():
+    """R_geo ~ N^(0.710 +- 0.013) (Arakawa et al. 2019)."""
+    slope, error = exponent(lambda packing: geodesic_radius(packing.position, packings.contacts(packing)))
+    assert error < 0.02 and abs(slope - 0.710) < 3 * np.hypot(error, 0.013), (slope, error)
