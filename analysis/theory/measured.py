@@ -55,11 +55,11 @@ class PowerLaw:
 
 
 # Of ice grains of 0.1 um: the page's fits.
-TENSILE = PowerLaw(4.397e4, 1.21e3, 2.115, 0.0704)  # Pa
+TENSILE = PowerLaw(4.366e4, 9.85e2, 2.101, 0.0665)  # Pa
 COMPRESSIVE = tuple(
-    zip((0.1, 0.6437, 0.0427), (0.2, 0.6432, 0.0315), (0.3, 0.8297, 0.0456), (0.4, 1.174, 0.0501))
+    zip((0.1, 0.6437, 0.0427), (0.2, 0.6432, 0.0315), (0.3, 0.8297, 0.0456), (0.4, 1.171, 0.0367))
 )  # filling, over T23's formula, error: no power law
-CONDUCTIVITY = PowerLaw(0.01297, 0.000166, 2.324, 0.0413)  # k/k_mat
+CONDUCTIVITY = PowerLaw(0.01291, 0.000168, 2.316, 0.035)  # k/k_mat
 # Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
 FRAGMENTATION = {"bpca": (11.19, 0.39), "bcca": (6.90, 0.30), "compressed": (15.06, 0.56), "cpe": (17.73, 0.99)}
 RADIUS = GRAIN_RADIUS["ice"]
