@@ -10,6 +10,7 @@ from ..atlas.make import SIZES
 from ..atlas.outcome_table import PROBABILITIES, read_outcomes
 from ..atlas.query import outcome, outcomes_file
 from ..atlas.rules import KINDS
+from ..atlas.rules import outcome as outcome_at_end
 from ..atlas.variables import STRUCTURES, decided, drawn, fit_and_held_out, of_structure, slow, variables
 from ..figures.style import letter, panels, styled
 from ..measures.fragments import growth_efficiency
@@ -28,6 +29,7 @@ COMPACT, MANY_CONTACTS = 0.4, 6.0
 EQUAL, HEAD_ON = 0.5, 0.5  # mass ratio at least, impact parameter at most
 UNEQUAL = 0.25  # mass ratio from which on to EQUAL it is about 1/3
 GROWING = 5.0, 18.0  # v_break: where the mean growth efficiency falls through 0
+STICKING_FALLS = 3.0, 14.0  # v_break: where the fraction that sticks falls through 1/2; chosen after the runs
 RATIOS = {"below 1/16": (0.0, 1 / 16), "1/16 to 1/4": (1 / 16, 1 / 4), "1/4 to 1": (1 / 4, 1.0)}  # of masses
 
 
@@ -82,6 +84,12 @@ def critical_speed(runs):
     return zero_of_fit(runs.speed, growth_efficiency(runs.largest * (1.0 + q), 1.0, q))
 
 
+def sticking_speed(runs):
+    """Speed [v_break] at which half of the runs have stuck when they end: their fraction linear in ln v over
+    STICKING_FALLS."""
+    return zero_of_fit(runs.speed, (outcome_at_end(runs) == STICKING) - 0.5)
+
+
 def rows(runs):
     """What papers say of when aggregates bounce, beside the runs; then what the runs add. Slow: below SLOW."""
     chosen_by_none = drawn(runs)
@@ -114,15 +122,16 @@ def rows(runs):
     lost = average(slow_known.lost_in_compression[central & dense])
     what = "dissipated until the largest compression, slow, compressed of filling 0.35 to 0.5, b < 0.7, equal"
     yield Row(what, lost, None, "nearly 90 %, of another measure", "Oshiro 2025")
-    yield from _growth(known)
+    yield from _growth(chosen_by_none[chosen_by_none.outcome != NEVER_MET])
     yield from _outcomes(slowly, known)
     yield from _predictions(runs)
 
 
-def _growth(known):
-    """Up to which speed targets grow, over all impact parameters: against the mass ratio, and the structure."""
-    known = known[known.speed.between(*GROWING)]
-    bpca, of_ratio = known[known.structure == "bpca"], []
+def _growth(met):
+    """Up to which speeds targets grow and half of the runs stick, over all impact parameters: against the mass ratio,
+    and the structure. Undecided runs count as they end: without them those that lose more would remain."""
+    falling, met = met[met.speed.between(*STICKING_FALLS)], met[met.speed.between(*GROWING)]
+    bpca, of_ratio = met[met.structure == "bpca"], []
     within = lambda low, high: bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)]
     for words, (low, high) in RATIOS.items():
         of_ratio.append(within(low, high))
@@ -137,8 +146,13 @@ def _growth(known):
     what = "critical velocity of BPCA, masses 1/4 to 1/2 over 1/2 to 1"
     yield Row(what, beside(critical_speed, *near, np.divide), (0.375, 0.67), "half: to a third", "Hasegawa 2021")
     for name in ("bcca", "cpe", "compressed"):
-        found = estimate(critical_speed, known[known.structure == name])
+        found = estimate(critical_speed, met[met.structure == name])
         yield Row(f"critical velocity of {name}, all masses [v_break]", found)
+    equal = falling[(falling.structure == "bpca") & (falling.mass_ratio > UNEQUAL)]
+    yield Row("velocity at which half of BPCA stick, masses 1/4 to 1 [v_break]", estimate(sticking_speed, equal))
+    for name in ("bcca", "cpe", "compressed"):
+        found = estimate(sticking_speed, falling[falling.structure == name])
+        yield Row(f"velocity at which half of {name} stick, all masses [v_break]", found)
 
 
 def _outcomes(slowly, known):

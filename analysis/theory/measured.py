@@ -61,7 +61,9 @@ COMPRESSIVE = tuple(
 )  # filling, over T23's formula, error: no power law
 CONDUCTIVITY = PowerLaw(0.01291, 0.000168, 2.316, 0.035)  # k/k_mat
 # Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
-FRAGMENTATION = {"bpca": (11.19, 0.39), "bcca": (6.90, 0.30), "compressed": (15.06, 0.56), "cpe": (17.73, 0.99)}
+FRAGMENTATION = {"bpca": (11.18, 0.383), "bcca": (7.00, 0.294), "compressed": (15.08, 0.551), "cpe": (17.73, 0.974)}
+# Velocity at which half of collisions have stuck when they end; a third of BCCA are undecided then (5.8 without them).
+STICKING = {"bpca": (6.88, 0.241), "bcca": (6.35, 0.135), "compressed": (8.82, 0.345), "cpe": (8.30, 0.592)}
 RADIUS = GRAIN_RADIUS["ice"]
 
 
@@ -134,7 +136,7 @@ def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=None):
     Parameters
     ----------
     structure : str
-        Of FRAGMENTATION.
+        Of FRAGMENTATION; ValueError for another.
     material : theory.Material
     grain_radius : float [m], optional
         By default that of the material in theory.GRAIN_RADIUS.
@@ -143,5 +145,18 @@ def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=None):
     -------
     Measured
     """
+    return _velocity(FRAGMENTATION, structure, material, grain_radius)
+
+
+def sticking_velocity(structure="bpca", material=ICE, grain_radius=None):
+    """Velocity [m/s] at which half of collisions stick, over all impact parameters, of the same pairs; arguments and
+    what is returned as of fragmentation_velocity(). Slower close-packed aggregates (cpe) bounce now and then.
+    theory.sticking_velocity() is of two grains."""
+    return _velocity(STICKING, structure, material, grain_radius)
+
+
+def _velocity(table, structure, material, grain_radius):
+    if structure not in table:
+        raise ValueError(f"structure = {structure!r}: must be one of {', '.join(table)}")
     scale = breaking_velocity(material, _radius(material, grain_radius))
-    return Measured(*(scale * number for number in FRAGMENTATION[structure]))
+    return Measured(*(scale * number for number in table[structure]))

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from math import hypot
 
+import numpy as np
 import pandas
 import pytest
 
@@ -66,14 +67,30 @@ def test_factors_of_the_compression_are_the_runs_means_and_lie_on_lines(ice):
         assert abs(line - found.value) < 3 * hypot(error, found.error)
 
 
-def test_the_velocity_of_fragmentation_is_the_atlass():
+@pytest.mark.parametrize(
+    "table, bpca, others",
+    [
+        (measured.FRAGMENTATION, "critical velocity of BPCA, masses 1/4 to 1", "critical velocity of {}, all masses"),
+        (
+            measured.STICKING,
+            "velocity at which half of BPCA stick, masses 1/4 to 1",
+            "velocity at which half of {} stick, all masses",
+        ),
+    ],
+)
+def test_velocities_are_the_atlass(table, bpca, others):
     rows = pandas.read_csv(GALLERY / "atlas" / "comparison.csv").set_index("quantity")
-    names = {"bpca": "critical velocity of BPCA, masses 1/4 to 1 [v_break]"}
-    for structure, (value, error) in measured.FRAGMENTATION.items():
-        row = rows.loc[names.get(structure, f"critical velocity of {structure}, all masses [v_break]")]
-        assert (value, error) == pytest.approx((row.ours, row.error), rel=0.01)
-    found = measured.fragmentation_velocity("bcca")
-    assert found.value == pytest.approx(6.90 * 3.823, rel=1e-3) and found.error == pytest.approx(0.30 * 3.823, rel=1e-3)
+    for structure, found in table.items():
+        row = rows.loc[(bpca if structure == "bpca" else others.format(structure)) + " [v_break]"]
+        assert found == pytest.approx((row.ours, row.error), rel=0.01)
+
+
+def test_velocities_go_as_that_which_breaks_contacts():
+    found, (value, error) = measured.fragmentation_velocity("bcca"), measured.FRAGMENTATION["bcca"]
+    assert found == pytest.approx((value * 3.823, error * 3.823), rel=1e-3)
+    assert measured.sticking_velocity("bcca") == pytest.approx(np.multiply(measured.STICKING["bcca"], 3.823), rel=1e-3)
+    with pytest.raises(ValueError, match="structure = 'dust': must be one of bpca, bcca, compressed, cpe"):
+        measured.sticking_velocity("dust")
 
 
 def test_strengths_scale_as_their_formulas():
