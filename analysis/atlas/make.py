@@ -137,15 +137,18 @@ def outcome_grid(model, structure, averaged, version):
 def main(folder=FOLDER):
     """Exit status: 0, or 2 with one line on stderr."""
     try:
+        from threadpoolctl import threadpool_limits  # comes with scikit-learn
+
         from .model import Model
 
         table = read_runs(Path(folder) / RUNS_FILE.name)
-        for structure in STRUCTURES:
-            model = Model(of_structure(table, structure))
-            for averaged in (True, False):
-                file = Path(folder) / outcomes_file(structure, averaged).name
-                write_outcomes(file, outcome_grid(model, structure, averaged, version()))
-                print(file)
+        with threadpool_limits(1):  # the matrices are small: threads that wait for each other take far longer
+            for structure in STRUCTURES:
+                model = Model(of_structure(table, structure))
+                for averaged in (True, False):
+                    file = Path(folder) / outcomes_file(structure, averaged).name
+                    write_outcomes(file, outcome_grid(model, structure, averaged, version()))
+                    print(file)
     except (OSError, ModuleNotFoundError, RunFolderError, ValueError) as error:
         complain(error)
         return FAILED
