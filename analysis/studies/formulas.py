@@ -151,14 +151,15 @@ def _dependences(runs, ice):
     """On grains, rate and size, at two fillings at most."""
     middle = where(ice, finalFilling=0.2)
     of = {
-        "γⁿ": (("surfaceEnergy", 0.02, 0.2), (1.0, "1", "T19")),
-        "rⁿ, 0.05 over 0.1 µm": (("grainRadius", 5e-8, 0.5), (-1.0, "−1", "T19")),
-        "rⁿ, 1 over 0.1 µm": (("grainRadius", 1e-6, 10.0), (-1.0, "−1", "T19")),
-        "ξ_critⁿ, 2 over 8 Å": (("criticalRolling", 2e-10, 0.25), ()),
-        "ξ_critⁿ, 32 over 8 Å": (("criticalRolling", 3.2e-9, 4.0), ()),
+        "γⁿ": (dict(surfaceEnergy=0.02), 0.2, (1.0, "1", "T19")),
+        "rⁿ, 0.05 over 0.1 µm": (dict(grainRadius=5e-8), 0.5, (-1.0, "−1", "T19")),
+        "rⁿ, 1 over 0.1 µm": (dict(grainRadius=1e-6), 10.0, (-1.0, "−1", "T19")),
+        "rⁿ, 1 over 0.1 µm, one ξ_crit/r": (dict(grainRadius=1e-6, criticalRolling=8e-9), 10.0, (-1.0, "−1", "T19")),
+        "ξ_critⁿ, 2 over 8 Å": (dict(criticalRolling=2e-10), 0.25, ()),
+        "ξ_critⁿ, 32 over 8 Å": (dict(criticalRolling=3.2e-9), 4.0, ()),
     }
-    for what, ((name, value, by), paper) in of.items():
-        other = where(runs, **{**ICE, name: value, "finalFilling": 0.2})
+    for what, (other_grains, by, paper) in of.items():
+        other = where(runs, **{**ICE, **other_grains, "finalFilling": 0.2})
         yield Row(f"n of tensile strength ∝ {what}", change("tensile_strength", other, middle, by), *paper)
         more = change("pressed", other, middle, by)
         yield Row(f"n of compressive strength over its formula ∝ {what}", more, 0.0, "0", "T23")

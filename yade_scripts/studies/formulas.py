@@ -19,6 +19,7 @@ CELLS = [
     {**MIDDLE, "surfaceEnergy": "0.02"},
     *({**MIDDLE, "grainRadius": radius} for radius in ("5e-8", "1e-6")),
     *({**MIDDLE, "criticalRolling": rolling} for rolling in ("2e-10", "32e-10")),
+    {**MIDDLE, "grainRadius": "1e-6", "criticalRolling": "80e-10"},
     {**MIDDLE, "strainRate": "5e-7"},
     {**MIDDLE, "material": "silicate"},
     *({**MIDDLE, "finalFilling": filling, "grains": 4096} for filling in ("0.1", "0.3")),
