@@ -28,6 +28,18 @@ def _filling(values):
     return numbers("filling", values, positive=True, most=1.0)
 
 
+TENSION, PRESSURE = 0, 1  # places in rows of ROLLING
+
+
+def _by_rolling(which, strength, critical_rolling, grain_radius):
+    """A Measured strength times what ROLLING says of it; beyond its ends as there."""
+    places, (factors, errors) = np.log(list(ROLLING)), np.transpose([row[which] for row in ROLLING.values()])
+    place = np.log(np.divide(critical_rolling, grain_radius))
+    factor = np.interp(place, places, factors)
+    error = np.hypot(strength.error * factor, strength.value * np.interp(place, places, errors))
+    return Measured(strength.value * factor, error)
+
+
 def _radius(material, grain_radius):
     """[m]; that of ice or silicate where it is None, ValueError for another material."""
     if grain_radius is None:
@@ -60,6 +72,15 @@ COMPRESSIVE = tuple(
     zip((0.1, 0.6437, 0.0427), (0.2, 0.6432, 0.0315), (0.3, 0.8297, 0.0456), (0.4, 1.171, 0.0367))
 )  # filling, over T23's formula, error: no power law
 CONDUCTIVITY = PowerLaw(0.01291, 0.000168, 2.316, 0.035)  # k/k_mat
+# Critical rolling over radius of grains: (value, error) of what it does to tensile and to compressive strength beside
+# ice of 0.1 um, of clusters of a filling factor of 0.2.
+ROLLING = {
+    8e-4: ((0.868, 0.034), (1.412, 0.168)),
+    2e-3: ((0.888, 0.044), (1.290, 0.055)),
+    8e-3: ((1.0, 0.0), (1.0, 0.0)),
+    0.016: ((1.120, 0.039), (0.779, 0.039)),
+    0.032: ((1.229, 0.037), (0.581, 0.032)),
+}
 # Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
 FRAGMENTATION = {"bpca": (11.18, 0.383), "bcca": (7.00, 0.294), "compressed": (15.08, 0.551), "cpe": (17.73, 0.974)}
 # Velocity at which half of collisions have stuck when they end; a third of BCCA are undecided then (5.8 without them).
@@ -67,7 +88,9 @@ STICKING = {"bpca": (6.88, 0.241), "bcca": (6.35, 0.135), "compressed": (8.82, 0
 RADIUS = GRAIN_RADIUS["ice"]
 
 
-def tensile_strength(filling, surface_energy=ICE.surface_energy, grain_radius=RADIUS):
+def tensile_strength(
+    filling, surface_energy=ICE.surface_energy, grain_radius=RADIUS, critical_rolling=ICE.critical_rolling
+):
     """Largest tension [Pa] of an aggregate that is stretched, by its filling factor before; over a tenth of the strain
     up to it.
 
@@ -76,19 +99,21 @@ def tensile_strength(filling, surface_energy=ICE.surface_energy, grain_radius=RA
     filling : float or array
     surface_energy : float [J/m^2]
     grain_radius : float [m]
-        Runs are of 0.1 J/m^2 and 1e-7 m; that the strength goes as surface_energy/grain_radius is the scaling of
-        Tatsuuma et al. (2019), which the error leaves out.
+    critical_rolling : float [m]
+        The strength goes as surface_energy/grain_radius (Tatsuuma et al. 2019), times what ROLLING says of
+        critical_rolling/grain_radius, as measured at a filling factor of 0.2.
 
     Returns
     -------
     Measured
     """
-    return TENSILE.times(surface_energy / ICE.surface_energy * RADIUS / grain_radius, filling)
+    strength = TENSILE.times(surface_energy / ICE.surface_energy * RADIUS / grain_radius, filling)
+    return _by_rolling(TENSION, strength, critical_rolling, grain_radius)
 
 
 def compressive_strength(filling, material=ICE, grain_radius=None):
     """Pressure [Pa] of a quasistatic compression at a filling factor: that of Tatsuuma et al. (2023), corrected by a
-    factor between those measured; NaN beyond them.
+    factor between those measured, NaN beyond them, and by ROLLING.
 
     Parameters
     ----------
@@ -107,7 +132,8 @@ def compressive_strength(filling, material=ICE, grain_radius=None):
     scale = aggregates.strength_scale(energy, grain_radius)
     filling, (fillings, *factors) = _filling(filling), COMPRESSIVE
     formula = aggregates.compressive_strength_dense(filling, scale)
-    return Measured(*(formula * np.interp(filling, fillings, own, np.nan, np.nan) for own in factors))
+    strength = Measured(*(formula * np.interp(filling, fillings, own, np.nan, np.nan) for own in factors))
+    return _by_rolling(PRESSURE, strength, material.critical_rolling, grain_radius)
 
 
 def conductivity(filling, material=ICE, grain_radius=None):

@@ -8,10 +8,10 @@ import pandas
 import pytest
 
 from analysis.studies import formulas
-from analysis.studies.estimates import estimate, estimates, mean, where
+from analysis.studies.estimates import beside, estimate, estimates, mean, where
 from analysis.studies.gather import gather
 from analysis.studies.study import GALLERY, find
-from analysis.theory import ICE, SILICATE, measured
+from analysis.theory import ICE, SILICATE, aggregates, measured
 
 LAWS = {  # column of the study: (its filling, law)
     "tensile_strength": ("filling", measured.TENSILE),
@@ -20,10 +20,14 @@ LAWS = {  # column of the study: (its filling, law)
 
 
 @pytest.fixture(scope="module")
-def ice():
+def clusters():
     study = find("formulas")
-    table = gather(study, [GALLERY / "formulas" / "runs.csv"]).table
-    runs = where(study.runs(table), **formulas.ICE)
+    return study.runs(gather(study, [GALLERY / "formulas" / "runs.csv"]).table)
+
+
+@pytest.fixture(scope="module")
+def ice(clusters):
+    runs = where(clusters, **formulas.ICE)
     return runs[runs.finalFilling <= formulas.FITTED]
 
 
@@ -93,8 +97,39 @@ def test_velocities_go_as_that_which_breaks_contacts():
         measured.sticking_velocity("dust")
 
 
+def test_factors_of_rolling_are_those_of_the_same_clusters(clusters, ice):
+    assert measured.ROLLING[8e-3] == ((1.0, 0.0), (1.0, 0.0))  # of `ice` itself
+    clusters, middle = where(clusters, finalFilling=0.2, material="ice"), where(ice, finalFilling=0.2)
+    for ratio in measured.ROLLING.keys() - {8e-3}:
+        own = clusters[np.isclose(clusters.criticalRolling / clusters.grainRadius, ratio)]
+        for name, (value, error) in zip(("pulled", "pressed"), measured.ROLLING[ratio]):
+            found = beside(mean(name), own, middle, np.divide)
+            assert value == pytest.approx(found.value, rel=0.01) and error == pytest.approx(found.error, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    "kept_out, material",
+    [
+        (dict(material="silicate"), SILICATE),
+        (dict(material="ice", surfaceEnergy=0.02), replace(ICE, surface_energy=0.02)),
+        (dict(grainRadius=1e-6, criticalRolling=8e-9), replace(ICE, critical_rolling=8e-9)),
+    ],
+)
+def test_strengths_of_grains_that_were_kept_out(clusters, kept_out, material):
+    """Of eight clusters each, within three combined errors."""
+    own = where(clusters, finalFilling=0.2, **kept_out)
+    radius = own.grainRadius.iloc[0]
+    scale = aggregates.strength_scale(own.rolling_energy.iloc[0], radius)
+    formula = aggregates.compressive_strength_dense(0.2, scale)
+    tension = measured.tensile_strength(own.filling.mean(), material.surface_energy, radius, material.critical_rolling)
+    pressure = measured.compressive_strength(0.2, material, radius)
+    for foretold, values in ((tension, own.tensile_strength), (pressure, own.pressed * formula)):
+        found, error = values.mean(), values.sem()
+        assert len(own) == 8 and abs(foretold.value - found) < 3 * hypot(foretold.error, error)
+
+
 def test_strengths_scale_as_their_formulas():
-    one, other = measured.tensile_strength(0.2), measured.tensile_strength(0.2, 0.02, 1e-6)
+    one, other = measured.tensile_strength(0.2), measured.tensile_strength(0.2, 0.02, 1e-6, 8e-9)
     assert one.value / other.value == pytest.approx(50) and one.error / other.error == pytest.approx(50)
     near, far = measured.conductivity([0.23, 0.4])[1] / measured.conductivity([0.23, 0.4])[0]
     assert near < far and measured.compressive_strength(0.2).error > 0
