@@ -83,7 +83,9 @@ ROLLING = {
 }
 # Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
 FRAGMENTATION = {"bpca": (11.18, 0.383), "bcca": (7.00, 0.294), "compressed": (15.08, 0.551), "cpe": (17.73, 0.974)}
-# Velocity at which half of collisions have stuck when they end; a third of BCCA are undecided then (5.8 without them).
+# Velocity at which half of collisions have stuck when they end. Not in the errors: a third of BCCA are undecided then
+# (5.8 without them, 7.0 if all of them stick), and other ranges of velocity to fit give 6.0 to 6.5 (BCCA), 6.9 to 7.2
+# (BPCA), 8.3 to 9.0 (CPE).
 STICKING = {"bpca": (6.88, 0.241), "bcca": (6.35, 0.135), "compressed": (8.82, 0.345), "cpe": (8.30, 0.592)}
 RADIUS = GRAIN_RADIUS["ice"]
 
@@ -177,7 +179,7 @@ def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=None):
 def sticking_velocity(structure="bpca", material=ICE, grain_radius=None):
     """Velocity [m/s] at which half of collisions stick, over all impact parameters, of the same pairs; arguments and
     what is returned as of fragmentation_velocity(). Slower close-packed aggregates (cpe) bounce now and then.
-    theory.sticking_velocity() is of two grains."""
+    The error leaves out undecided runs and the fitted range (STICKING). theory.sticking_velocity() is of two grains."""
     return _velocity(STICKING, structure, material, grain_radius)
 
 

@@ -116,7 +116,7 @@ def test_factors_of_rolling_are_those_of_the_same_clusters(clusters, ice):
     ],
 )
 def test_strengths_of_grains_that_were_kept_out(clusters, kept_out, material):
-    """Of eight clusters each, within three combined errors."""
+    """Of eight clusters each, within three combined errors; the runs were known when the factors were chosen."""
     own = where(clusters, finalFilling=0.2, **kept_out)
     radius = own.grainRadius.iloc[0]
     scale = aggregates.strength_scale(own.rolling_energy.iloc[0], radius)
