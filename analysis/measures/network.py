@@ -5,10 +5,12 @@ from scipy.sparse import bmat, coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 
-def contact_network(grains, pairs):
-    """Sparse matrix (N,N) of N = `grains` grains with an entry for each of pairs (M,2) int, for scipy's csgraph."""
+def contact_network(grains, pairs, lengths=None):
+    """Sparse matrix (N,N) of N = `grains` grains with an entry for each of pairs (M,2) int, 1 or of lengths (M,), for
+    scipy's csgraph."""
     pairs = np.asarray(pairs, dtype=np.intp).reshape(-1, 2)
-    return coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)).tocsr()
+    entries = np.ones(len(pairs)) if lengths is None else lengths
+    return coo_matrix((entries, (pairs[:, 0], pairs[:, 1])), shape=(grains, grains)).tocsr()
 
 
 def spanning_forest(network):

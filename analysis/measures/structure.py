@@ -9,11 +9,11 @@ from itertools import product
 from math import ceil
 
 import numpy as np
-from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from ..arrays import numbers, pairs
+from .network import contact_network
 
 SCALES, MOST_ORIGINS = 12, 500  # of correlation_dimension; the latter of geodesic_radius, too
 DEPTH = 0.25  # of the zone of zone_filling(), in radii of the aggregate
@@ -106,10 +106,10 @@ def geodesic_radius(position, contact_pairs):
     """
     position = _points(position)
     grains = len(position)
-    first, second = pairs("contact_pairs", contact_pairs, grains).T
-    lengths = np.linalg.norm(position[first] - position[second], axis=1)
+    contact_pairs = pairs("contact_pairs", contact_pairs, grains)
+    lengths = np.linalg.norm(np.subtract(*position[contact_pairs.T]), axis=1)
     origins = np.unique(np.linspace(0, grains - 1, MOST_ORIGINS).round().astype(int))
-    ways = dijkstra(csr_matrix((lengths, (first, second)), (grains, grains)), directed=False, indices=origins)
+    ways = dijkstra(contact_network(grains, contact_pairs, lengths), directed=False, indices=origins)
     return float(np.sqrt((ways**2).mean() / 2.0))
 
 

@@ -122,15 +122,17 @@ def rows(runs):
     lost = average(slow_known.lost_in_compression[central & dense])
     what = "dissipated until the largest compression, slow, compressed of filling 0.35 to 0.5, b < 0.7, equal"
     yield Row(what, lost, None, "nearly 90 %, of another measure", "Oshiro 2025")
-    yield from _growth(chosen_by_none[chosen_by_none.outcome != NEVER_MET])
+    met = chosen_by_none[chosen_by_none.outcome != NEVER_MET]
+    yield from _growth(met)
+    yield from _sticking_speeds(met)
     yield from _outcomes(slowly, known)
     yield from _predictions(runs)
 
 
 def _growth(met):
-    """Up to which speeds targets grow and half of the runs stick, over all impact parameters: against the mass ratio,
-    and the structure. Undecided runs count as they end: without them those that lose more would remain."""
-    falling, met = met[met.speed.between(*STICKING_FALLS)], met[met.speed.between(*GROWING)]
+    """Up to which speed targets grow, over all impact parameters: against the mass ratio, and the structure. Undecided
+    runs count as they end: without them those that lose more would remain."""
+    met = met[met.speed.between(*GROWING)]
     bpca, of_ratio = met[met.structure == "bpca"], []
     within = lambda low, high: bpca[(bpca.mass_ratio > low) & (bpca.mass_ratio <= high)]
     for words, (low, high) in RATIOS.items():
@@ -148,10 +150,15 @@ def _growth(met):
     for name in ("bcca", "cpe", "compressed"):
         found = estimate(critical_speed, met[met.structure == name])
         yield Row(f"critical velocity of {name}, all masses [v_break]", found)
-    equal = falling[(falling.structure == "bpca") & (falling.mass_ratio > UNEQUAL)]
+
+
+def _sticking_speeds(met):
+    """At which speed half of the runs have stuck when they end, over all impact parameters, against the structure."""
+    met = met[met.speed.between(*STICKING_FALLS)]
+    equal = met[(met.structure == "bpca") & (met.mass_ratio > UNEQUAL)]
     yield Row("velocity at which half of BPCA stick, masses 1/4 to 1 [v_break]", estimate(sticking_speed, equal))
     for name in ("bcca", "cpe", "compressed"):
-        found = estimate(sticking_speed, falling[falling.structure == name])
+        found = estimate(sticking_speed, met[met.structure == name])
         yield Row(f"velocity at which half of {name} stick, all masses [v_break]", found)
 
 

@@ -28,16 +28,12 @@ def _filling(values):
     return numbers("filling", values, positive=True, most=1.0)
 
 
-TENSION, PRESSURE = 0, 1  # places in rows of ROLLING
-
-
-def _by_rolling(which, strength, critical_rolling, grain_radius):
-    """A Measured strength times what ROLLING says of it; beyond its ends as there."""
-    places, (factors, errors) = np.log(list(ROLLING)), np.transpose([row[which] for row in ROLLING.values()])
-    place = np.log(np.divide(critical_rolling, grain_radius))
-    factor = np.interp(place, places, factors)
-    error = np.hypot(strength.error * factor, strength.value * np.interp(place, places, errors))
-    return Measured(strength.value * factor, error)
+def _by_rolling(strength, table, critical_rolling, grain_radius):
+    """A Measured strength times the factor of a table of ROLLING_...; beyond its ends as there."""
+    ratios, *columns = table
+    ratio = np.log(np.divide(critical_rolling, grain_radius))
+    factor, error = (np.interp(ratio, np.log(ratios), column) for column in columns)
+    return Measured(strength.value * factor, np.hypot(strength.error * factor, strength.value * error))
 
 
 def _radius(material, grain_radius):
@@ -72,20 +68,17 @@ COMPRESSIVE = tuple(
     zip((0.1, 0.6437, 0.0427), (0.2, 0.6432, 0.0315), (0.3, 0.8297, 0.0456), (0.4, 1.171, 0.0367))
 )  # filling, over T23's formula, error: no power law
 CONDUCTIVITY = PowerLaw(0.01291, 0.000168, 2.316, 0.035)  # k/k_mat
-# Critical rolling over radius of grains: (value, error) of what it does to tensile and to compressive strength beside
-# ice of 0.1 um, of clusters of a filling factor of 0.2.
-ROLLING = {
-    8e-4: ((0.868, 0.034), (1.412, 0.168)),
-    2e-3: ((0.888, 0.044), (1.290, 0.055)),
-    8e-3: ((1.0, 0.0), (1.0, 0.0)),
-    0.016: ((1.120, 0.039), (0.779, 0.039)),
-    0.032: ((1.229, 0.037), (0.581, 0.032)),
-}
+# What critical rolling over radius does to strengths, beside ice of 0.1 um, of clusters of a filling factor of 0.2:
+# ratio, factor, error.
+ROLLING_TENSILE = tuple(
+    zip((8e-4, 0.868, 0.034), (2e-3, 0.888, 0.044), (8e-3, 1.0, 0.0), (0.016, 1.120, 0.039), (0.032, 1.229, 0.037))
+)
+ROLLING_COMPRESSIVE = tuple(
+    zip((8e-4, 1.412, 0.168), (2e-3, 1.290, 0.055), (8e-3, 1.0, 0.0), (0.016, 0.779, 0.039), (0.032, 0.581, 0.032))
+)
 # Velocity above which targets lose more than they gain, over v_break and averaged over impact parameters: value, error.
 FRAGMENTATION = {"bpca": (11.18, 0.383), "bcca": (7.00, 0.294), "compressed": (15.08, 0.551), "cpe": (17.73, 0.974)}
-# Velocity at which half of collisions have stuck when they end. Not in the errors: a third of BCCA are undecided then
-# (5.8 without them, 7.0 if all of them stick), and other ranges of velocity to fit give 6.0 to 6.5 (BCCA), 6.9 to 7.2
-# (BPCA), 8.3 to 9.0 (CPE).
+# Velocity at which half of collisions have stuck when they end; docs/formulas.md says what the errors leave out.
 STICKING = {"bpca": (6.88, 0.241), "bcca": (6.35, 0.135), "compressed": (8.82, 0.345), "cpe": (8.30, 0.592)}
 RADIUS = GRAIN_RADIUS["ice"]
 
@@ -102,20 +95,20 @@ def tensile_strength(
     surface_energy : float [J/m^2]
     grain_radius : float [m]
     critical_rolling : float [m]
-        The strength goes as surface_energy/grain_radius (Tatsuuma et al. 2019), times what ROLLING says of
-        critical_rolling/grain_radius, as measured at a filling factor of 0.2.
+        The strength goes as surface_energy/grain_radius (Tatsuuma et al. 2019), times a factor of
+        critical_rolling/grain_radius that was measured at a filling factor of 0.2 (ROLLING_TENSILE).
 
     Returns
     -------
     Measured
     """
     strength = TENSILE.times(surface_energy / ICE.surface_energy * RADIUS / grain_radius, filling)
-    return _by_rolling(TENSION, strength, critical_rolling, grain_radius)
+    return _by_rolling(strength, ROLLING_TENSILE, critical_rolling, grain_radius)
 
 
 def compressive_strength(filling, material=ICE, grain_radius=None):
     """Pressure [Pa] of a quasistatic compression at a filling factor: that of Tatsuuma et al. (2023), corrected by a
-    factor between those measured, NaN beyond them, and by ROLLING.
+    factor between those measured, NaN beyond them, and by that of ROLLING_COMPRESSIVE.
 
     Parameters
     ----------
@@ -135,7 +128,7 @@ def compressive_strength(filling, material=ICE, grain_radius=None):
     filling, (fillings, *factors) = _filling(filling), COMPRESSIVE
     formula = aggregates.compressive_strength_dense(filling, scale)
     strength = Measured(*(formula * np.interp(filling, fillings, own, np.nan, np.nan) for own in factors))
-    return _by_rolling(PRESSURE, strength, material.critical_rolling, grain_radius)
+    return _by_rolling(strength, ROLLING_COMPRESSIVE, material.critical_rolling, grain_radius)
 
 
 def conductivity(filling, material=ICE, grain_radius=None):
@@ -179,7 +172,8 @@ def fragmentation_velocity(structure="bpca", material=ICE, grain_radius=None):
 def sticking_velocity(structure="bpca", material=ICE, grain_radius=None):
     """Velocity [m/s] at which half of collisions stick, over all impact parameters, of the same pairs; arguments and
     what is returned as of fragmentation_velocity(). Slower close-packed aggregates (cpe) bounce now and then.
-    The error leaves out undecided runs and the fitted range (STICKING). theory.sticking_velocity() is of two grains."""
+    The error leaves out undecided runs and the fitted range (docs/formulas.md). theory.sticking_velocity() is of two
+    grains."""
     return _velocity(STICKING, structure, material, grain_radius)
 
 

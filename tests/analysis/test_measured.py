@@ -90,19 +90,19 @@ def test_velocities_are_the_atlass(table, bpca, others):
 
 
 def test_velocities_go_as_that_which_breaks_contacts():
-    found, (value, error) = measured.fragmentation_velocity("bcca"), measured.FRAGMENTATION["bcca"]
-    assert found == pytest.approx((value * 3.823, error * 3.823), rel=1e-3)
-    assert measured.sticking_velocity("bcca") == pytest.approx(np.multiply(measured.STICKING["bcca"], 3.823), rel=1e-3)
+    assert measured.fragmentation_velocity("bcca") == pytest.approx((7.00 * 3.823, 0.294 * 3.823), rel=1e-3)
+    assert measured.sticking_velocity("bcca") == pytest.approx((6.35 * 3.823, 0.135 * 3.823), rel=1e-3)
     with pytest.raises(ValueError, match="structure = 'dust': must be one of bpca, bcca, compressed, cpe"):
         measured.sticking_velocity("dust")
 
 
 def test_factors_of_rolling_are_those_of_the_same_clusters(clusters, ice):
-    assert measured.ROLLING[8e-3] == ((1.0, 0.0), (1.0, 0.0))  # of `ice` itself
     clusters, middle = where(clusters, finalFilling=0.2, material="ice"), where(ice, finalFilling=0.2)
-    for ratio in measured.ROLLING.keys() - {8e-3}:
-        own = clusters[np.isclose(clusters.criticalRolling / clusters.grainRadius, ratio)]
-        for name, (value, error) in zip(("pulled", "pressed"), measured.ROLLING[ratio]):
+    for name, table in (("pulled", measured.ROLLING_TENSILE), ("pressed", measured.ROLLING_COMPRESSIVE)):
+        rows = {ratio: found for ratio, *found in zip(*table)}
+        assert rows.pop(8e-3) == [1.0, 0.0] and len(rows) == 4  # of `ice` itself, and others
+        for ratio, (value, error) in rows.items():
+            own = clusters[np.isclose(clusters.criticalRolling / clusters.grainRadius, ratio)]
             found = beside(mean(name), own, middle, np.divide)
             assert value == pytest.approx(found.value, rel=0.01) and error == pytest.approx(found.error, rel=0.1)
 

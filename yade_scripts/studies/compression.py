@@ -37,8 +37,8 @@ OWN = [  # beside the desk's
     *(({**BASE, "finalFilling": "0.12", **rolling}, range(5, 9)) for rolling in ({}, {"criticalRolling": "4e-10"})),
 ]
 
-SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolling": "xi", "stepFraction": "step"}
-SHORT |= {"finalFilling": "to"}
+SHORT = {"grains": "N", "strainRate": "Cv", "linearDamping": "k", "criticalRolling": "xi"}
+SHORT |= {"stepFraction": "step", "finalFilling": "to"}
 HEAD = """Kataoka et al. (2013), Figs 4 to 13: static compression of BCCA clusters in periodic cells. {}
 Units: strainRate: 1/t0; criticalRolling: m; stepFraction: t0."""
 
