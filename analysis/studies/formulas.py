@@ -24,10 +24,10 @@ from .estimates import Estimate, beside, estimate, estimates, mean, where
 from .figures import curves
 from .study import Study
 
-FILLINGS = 0.1, 0.2, 0.3, 0.4, 0.5
+FILLINGS = 0.03, 0.1, 0.2, 0.3, 0.4, 0.5
 SET = {"grains": 1024, "strainRate": 1e-6, "material": "ice"}
 ICE = {**SET, "surfaceEnergy": 0.1, "grainRadius": 1e-7, "criticalRolling": 8e-10}
-FITTED = 0.4  # up to which filling: the conductivity was found to be no power law beyond
+FITTED = 0.1, 0.4  # between which fillings: the conductivity was found to be no power law beyond
 PRESSED = 1.05  # the pressure at the end of the compression is that from the final filling over this on
 
 # What is measured of a run.
@@ -141,14 +141,14 @@ def rows(runs):
         found = estimate(mean("coordination"), where(ice, finalFilling=filling))
         yield Row(f"contacts of a grain, φ = {filling}", found)
     for name, (places, words, paper) in VALUES.items():
-        level, n = estimates(power_law(name, places), ice[ice.finalFilling <= FITTED])
+        level, n = estimates(power_law(name, places), ice[ice.finalFilling.between(*FITTED)])
         yield Row(f"{words} at φ = {MIDDLE}, fit", level)
         yield Row(f"n of {words} ∝ φⁿ", n, *paper)
     yield from _dependences(runs, ice)
 
 
 def _dependences(runs, ice):
-    """On grains, rate and size, at two fillings at most."""
+    """On grains, rate and size."""
     middle = where(ice, finalFilling=0.2)
     of = {
         "γⁿ": (dict(surfaceEnergy=0.02), 0.2, (1.0, "1", "T19")),
@@ -168,7 +168,7 @@ def _dependences(runs, ice):
         slow = where(runs, **{**ICE, "strainRate": 5e-7, "finalFilling": 0.2})
         ratio = partial(beside, mean(name), of=np.divide)
         yield Row(f"{word}, rate 5e-7 over 1e-6, φ = 0.2", ratio(slow, middle))
-        for filling in (0.1, 0.3):
+        for filling in (0.03, 0.1, 0.3):
             large = where(runs, **{**ICE, "grains": 4096, "finalFilling": filling})
             yield Row(f"{word}, 4,096 over 1,024 grains, φ = {filling}", ratio(large, where(ice, finalFilling=filling)))
         silicate = runs[(runs.material == "silicate") & np.isclose(runs.finalFilling, 0.2)]
