@@ -247,7 +247,9 @@ runs/demo/ended: $(PLUGIN) $(wildcard yade_scripts/*.py yade_scripts/*/*.py) yad
 # make check: kernel, physics, conservation, and of equivalence, hard cases and analysis all but the four slowest files (half of all tests).
 CHECKED := $(wildcard $(patsubst %,tests/%/test_*.py,kernel physics conservation equivalence hard_cases analysis))
 SLOW    := equivalence/test_one_run equivalence/test_grain_order hard_cases/test_mechanisms_left_out analysis/test_atlas
-# A file's tests stay in one process: they share what they have run.
+# A file's tests stay in one process: they share what they have run. Its algebra keeps to one thread: those of several
+# wait for each other wherever the other core is at work.
+check test test-newest: export OPENBLAS_NUM_THREADS := 1
 PYTEST  := $(PYTHON) -m pytest -p no:cacheprovider
 AT_ONCE := -n $(shell nproc) --dist loadfile --durations=8
 check: all lint

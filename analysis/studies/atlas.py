@@ -77,17 +77,25 @@ def bouncing_exponent(runs):
     return -by_speed / by_size
 
 
-def critical_speed(runs):
-    """Speed [v_break] above which targets lose more than they gain: where the growth efficiency (N_largest -
-    N_target)/N_projectile, linear in ln v over GROWING, falls through 0."""
+def _ends(runs):
+    """The runs with `grown`, their growth efficiency (N_largest - N_target)/N_projectile, and whether they have
+    `stuck`, as they end; no more columns than are needed, for the jackknife's sake."""
     q = runs.mass_ratio
-    return zero_of_fit(runs.speed, growth_efficiency(runs.largest * (1.0 + q), 1.0, q))
+    grown = growth_efficiency(runs.largest * (1.0 + q), 1.0, q)
+    own = runs[["pair", "structure", "size", "speed", "mass_ratio"]]
+    return own.assign(grown=grown, stuck=outcome_at_end(runs) == STICKING)
+
+
+def critical_speed(runs):
+    """Speed [v_break] above which targets lose more than they gain: where the growth efficiency, linear in ln v over
+    GROWING, falls through 0."""
+    return zero_of_fit(runs.speed, runs.grown)
 
 
 def sticking_speed(runs):
     """Speed [v_break] at which half of the runs have stuck when they end: their fraction linear in ln v over
     STICKING_FALLS."""
-    return zero_of_fit(runs.speed, (outcome_at_end(runs) == STICKING) - 0.5)
+    return zero_of_fit(runs.speed, runs.stuck - 0.5)
 
 
 def rows(runs):
@@ -122,7 +130,7 @@ def rows(runs):
     lost = average(slow_known.lost_in_compression[central & dense])
     what = "dissipated until the largest compression, slow, compressed of filling 0.35 to 0.5, b < 0.7, equal"
     yield Row(what, lost, None, "nearly 90 %, of another measure", "Oshiro 2025")
-    met = chosen_by_none[chosen_by_none.outcome != NEVER_MET]
+    met = _ends(chosen_by_none[chosen_by_none.outcome != NEVER_MET])
     yield from _growth(met)
     yield from _sticking_speeds(met)
     yield from _outcomes(slowly, known)

@@ -94,7 +94,7 @@ def point(**own):
 @pytest.fixture(scope="module")
 def fitted(made, model):
     """The Model of the made runs."""
-    return model.Model(made, members=10)
+    return model.Model(made, members=4)
 
 
 def test_model_finds_the_known_probability_of_made_runs(made, fitted):

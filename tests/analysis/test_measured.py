@@ -28,7 +28,7 @@ def clusters():
 @pytest.fixture(scope="module")
 def ice(clusters):
     runs = where(clusters, **formulas.ICE)
-    return runs[runs.finalFilling <= formulas.FITTED]
+    return runs[runs.finalFilling.between(*formulas.FITTED)]
 
 
 def fitted(runs, name, places):
