@@ -27,7 +27,7 @@ from .study import Study
 FILLINGS = 0.03, 0.1, 0.2, 0.3, 0.4, 0.5
 SET = {"grains": 1024, "strainRate": 1e-6, "material": "ice"}
 ICE = {**SET, "surfaceEnergy": 0.1, "grainRadius": 1e-7, "criticalRolling": 8e-10}
-FITTED = 0.1, 0.4  # between which fillings: the conductivity was found to be no power law beyond
+FITTED = 0.1, 0.4  # fillings between which: the conductivity was found to be no power law beyond; 0.03 was kept out
 PRESSED = 1.05  # the pressure at the end of the compression is that from the final filling over this on
 
 # What is measured of a run.

@@ -2,8 +2,8 @@
 and dust that take a formula without one. How the runs were made: analysis/gallery/formulas and analysis/gallery/atlas.
 
 Strengths and conductivity are of BCCA clusters of 1,024 grains of one size that were compressed to a filling factor of
-0.03 to 0.4; beyond, the error of a fit is no bound (at 0.5 the conductivity is a fifth higher). That of 4,096 grains at
-0.03 is 1.28 (error 0.11) times what is said here. Ice: that of theory.ICE."""
+0.03 to 0.4; beyond, the error of a fit is no bound (at 0.5 the conductivity is a fifth higher). The conductivity of
+4,096 grains at 0.03 is 1.28 (error 0.11) times what is said here. Ice: that of theory.ICE."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
