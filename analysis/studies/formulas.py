@@ -25,6 +25,7 @@ from .figures import curves
 from .study import Study
 
 FILLINGS = 0.03, 0.1, 0.2, 0.3, 0.4, 0.5
+OF_LARGE = 0.03, 0.1, 0.3  # fillings of the clusters of 4,096 grains
 SET = {"grains": 1024, "strainRate": 1e-6, "material": "ice"}
 ICE = {**SET, "surfaceEnergy": 0.1, "grainRadius": 1e-7, "criticalRolling": 8e-10}
 FITTED = 0.1, 0.4  # fillings between which: the conductivity was found to be no power law beyond; 0.03 was kept out
@@ -168,7 +169,7 @@ def _dependences(runs, ice):
         slow = where(runs, **{**ICE, "strainRate": 5e-7, "finalFilling": 0.2})
         ratio = partial(beside, mean(name), of=np.divide)
         yield Row(f"{word}, rate 5e-7 over 1e-6, φ = 0.2", ratio(slow, middle))
-        for filling in (0.03, 0.1, 0.3):
+        for filling in OF_LARGE:
             large = where(runs, **{**ICE, "grains": 4096, "finalFilling": filling})
             yield Row(f"{word}, 4,096 over 1,024 grains, φ = {filling}", ratio(large, where(ice, finalFilling=filling)))
         silicate = runs[(runs.material == "silicate") & np.isclose(runs.finalFilling, 0.2)]

@@ -3,11 +3,12 @@
 desk: clusters are compressed in periodic cells and then stretched along x until they break (tensile strength as in
 Tatsuuma et al. 2019, compressive strength as in Kataoka et al. 2013; states serve the conduction of heat). Eight
 clusters a point: fillings, surface energy, grain radius, critical rolling displacement and material, half the rate, and
-four times as many grains at three points. Rows stand in the order of their worth."""
+four times as many grains at OF_LARGE. Rows stand in the order of their worth."""
 
 from itertools import product
 
-FILLINGS = ("0.03", "0.1", "0.2", "0.3", "0.4", "0.5")
+from analysis.studies.formulas import FILLINGS, OF_LARGE
+
 SEEDS = range(1, 5), range(5, 9)  # four clusters of each set first
 BASE = {"grains": 1024, "strainRate": "1e-6"}
 MIDDLE = {**BASE, "finalFilling": "0.2"}
@@ -22,7 +23,7 @@ CELLS = [
     {**MIDDLE, "grainRadius": "1e-6", "criticalRolling": "80e-10"},
     {**MIDDLE, "strainRate": "5e-7"},
     {**MIDDLE, "material": "silicate"},
-    *({**MIDDLE, "finalFilling": filling, "grains": 4096} for filling in ("0.03", "0.1", "0.3")),
+    *({**MIDDLE, "finalFilling": filling, "grains": 4096} for filling in OF_LARGE),
 ]
 SHORT = {"grains": "N", "strainRate": "Cv", "finalFilling": "to", "surfaceEnergy": "gamma", "grainRadius": "r"}
 SHORT |= {"criticalRolling": "xi"}
